@@ -1,0 +1,9 @@
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+find_package(catkin REQUIRED COMPONENTS
+  cv_bridge diagnostic_updater dynamic_reconfigure image_geometry image_transport message_filters nodelet roscpp
+  sensor_msgs stereo_msgs)
+catkin_package(
+  INCLUDE_DIRS include
+  LIBRARIES fdp_stereo_core
+  DEPENDS OpenCV EIGEN3)

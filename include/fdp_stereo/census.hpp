@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fdp_stereo/types.hpp"
+
+namespace fdp_stereo {
+
+/// Stage 3: census bit strings (paper 2.1.4 and 3.1).
+struct CensusParams {
+  int window_width = 9;   ///< px, odd; (width * height - 1) <= 64 bits
+  int window_height = 7;  ///< px, odd
+};
+
+/// One code per pixel, row by row. Bit = neighbour < centre, neighbours in raster order, border replicated.
+/// grey: CV_8UC1 or CV_16UC1. Throws std::invalid_argument for another type or a window over 64 neighbours.
+void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes);
+
+}  // namespace fdp_stereo

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "fdp_stereo/census.hpp"
+#include "fdp_stereo/cost_volume.hpp"
+#include "fdp_stereo/types.hpp"
+
+namespace fdp_stereo {
+
+enum class MatchingCostType { kRhoCensus, kAdCensus, kCensus, kRho, kBirchfieldTomasi };
+
+/// Stage 4: C(p, d) from codes and colours (paper eq. 4-9).
+struct MatchingCostParams {
+  MatchingCostType type = MatchingCostType::kRhoCensus;
+  CensusParams census;
+  int scales = 1;                                       ///< census scales (eq. 7): 1 to 3
+  std::array<double, 3> scale_weights = {0.7, 0.2, 0.1};  ///< w_i of eq. (7); divided by their sum over the scales used
+  std::array<double, 3> scale_sigmas_px = {0.0, 1.0, 2.0};  ///< Gaussian blur of each scale
+  double alpha = 0.8;           ///< eq. (8): share of the gradient
+  double lambda_rho = 10.0;     ///< eq. (9)
+  double lambda_census = 30.0;  ///< eq. (9)
+  double lambda_ad = 10.0;      ///< eq. (6)
+  double rho_weight = 1.0;      ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
+  int bits = 8;                 ///< of one stored cost: 8 or 16
+};
+
+/// Largest cost that the parameters can give (2 for the paper's form).
+double maxMatchingCost(const MatchingCostParams& params);
+
+/// Fills the volume. step = cost of one raw unit; raw costs are rounded and at most round(max / step).
+/// Where x - d leaves the right image the last valid cost along d is repeated.
+void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
+                         CostVolume& volume);
+
+}  // namespace fdp_stereo

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "fdp_stereo/pipeline_params.hpp"
+
+namespace fdp_stereo {
+
+/// All that one run found.
+struct PipelineResult {
+  cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
+  cv::Mat confidence;  ///< CV_32FC1, 0..1
+  FeatureMatches matches;
+  Seeds seeds;
+  Seeds rejected_seeds;
+  RowAlignment row_alignment;
+  double propagated_share = 0.0;  ///< share of the pixels whose costs the seeds changed
+  std::vector<double> energies;   ///< of the optimiser, per iteration
+  std::vector<StageTime> times;   ///< in the order of the stages
+};
+
+/// The method: stages 1 to 8, one after another. Owns their buffers; one instance per thread.
+class Pipeline {
+ public:
+  /// Throws std::invalid_argument where validate() does.
+  explicit Pipeline(const PipelineParams& params);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// Disparity of a rectified pair: 8U or 16U, 1 or 3 (BGR) channels, equal sizes; never modified. external: seeds
+  /// from other sensors. cancel: may be set from another thread; the run then ends soon with what it has.
+  /// Throws std::invalid_argument for images that do not fit together or a range beyond max_memory_mb.
+  PipelineResult run(const cv::Mat& left, const cv::Mat& right, const Seeds& external = {},
+                     const std::atomic<bool>* cancel = nullptr);
+
+  /// Takes effect with the next run; keeps buffers and what was learnt from earlier frames where that still fits.
+  void setParams(const PipelineParams& params);
+  const PipelineParams& params() const { return params_; }
+  /// Forgets what was learnt from earlier frames (row alignment, previous planes).
+  void reset();
+
+ private:
+  struct Buffers;
+  PipelineParams params_;
+  std::unique_ptr<Optimizer> optimizer_;
+  RowAlignmentAccumulator row_alignment_;
+  std::unique_ptr<Buffers> buffers_;
+};
+
+}  // namespace fdp_stereo

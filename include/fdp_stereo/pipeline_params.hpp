@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fdp_stereo/disparity_propagation.hpp"
+#include "fdp_stereo/feature_matching.hpp"
+#include "fdp_stereo/hole_filling.hpp"
+#include "fdp_stereo/left_right_check.hpp"
+#include "fdp_stereo/local_expansion.hpp"
+#include "fdp_stereo/matching_cost.hpp"
+#include "fdp_stereo/optimizer.hpp"
+#include "fdp_stereo/row_alignment.hpp"
+#include "fdp_stereo/semi_global.hpp"
+#include "fdp_stereo/sparse_disparity.hpp"
+#include "fdp_stereo/speckle_filter.hpp"
+#include "fdp_stereo/weighted_median.hpp"
+#include "fdp_stereo/winner_takes_all.hpp"
+
+namespace fdp_stereo {
+
+struct PipelineParams {
+  DisparityRange search;
+  int threads = 0;             ///< 0 = all cores
+  double max_memory_mb = 4096;  ///< a pair that would need more is refused
+  FeatureMatchingParams feature_matching;
+  RowAlignmentParams row_alignment;
+  MatchingCostParams matching_cost;
+  SparseDisparityParams sparse_disparity;
+  DisparityPropagationParams disparity_propagation;
+  OptimizerType optimizer = OptimizerType::kSemiGlobal;
+  WinnerTakesAllParams winner_takes_all;
+  SemiGlobalParams semi_global;
+  LocalExpansionParams local_expansion;
+  LeftRightCheckParams left_right_check;
+  SpeckleFilterParams speckle_filter;
+  HoleFillingParams hole_filling;
+  WeightedMedianParams weighted_median;
+};
+
+/// A named choice, set and read by the name of its value.
+struct EnumRef {
+  std::vector<std::string> names;
+  std::function<int()> get;
+  std::function<void(int)> set;
+};
+
+/// One parameter: where it lives, what it may be, what it does. The one list that YAML, ROS, --help and the
+/// docs are made from.
+struct ParamRef {
+  std::string key;  ///< "stage.name"
+  std::variant<bool*, int*, double*, EnumRef> value;
+  double min = 0.0;  ///< of numbers, inclusive
+  double max = 0.0;
+  std::string unit;  ///< "" where there is none
+  std::string text;  ///< one sentence: the effect
+  std::string ros_name;  ///< name in dynamic_reconfigure
+};
+
+/// Every parameter of `params`, in the order of the pipeline. The references live as long as `params`.
+std::vector<ParamRef> paramList(PipelineParams& params);
+
+/// Calls visit for each entry of paramList().
+template <typename Visitor>
+void forEachParam(PipelineParams& params, Visitor&& visit) {
+  for (const ParamRef& ref : paramList(params)) visit(ref);
+}
+
+/// The value as text: "true", "12", "0.5", "rho_census".
+std::string toString(const ParamRef& ref);
+/// Sets one value. Throws std::invalid_argument naming key, value and what is allowed.
+void setFromString(const ParamRef& ref, const std::string& text);
+/// Sets by key; an unknown key throws std::invalid_argument and names the nearest one.
+void setParam(PipelineParams& params, const std::string& key, const std::string& text);
+/// "key=value".
+void setParam(PipelineParams& params, const std::string& assignment);
+
+/// Throws std::invalid_argument naming the first key whose value is outside its range, or values that exclude each other.
+void validate(const PipelineParams& params);
+
+/// Reads YAML (nested maps or dotted keys) over `params`; `name` is used in messages. Throws std::invalid_argument.
+void loadYaml(PipelineParams& params, const std::string& text, const std::string& name);
+/// Every parameter as YAML that loadYaml() takes.
+std::string toYaml(const PipelineParams& params);
+
+/// Names of the presets built in from config/*.yaml: "fast", "paper", ...
+std::vector<std::string> presetNames();
+/// A built-in preset by name, or a YAML file by path. Throws std::invalid_argument naming what exists.
+PipelineParams loadPreset(const std::string& name_or_file);
+
+}  // namespace fdp_stereo

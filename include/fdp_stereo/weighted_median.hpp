@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "fdp_stereo/types.hpp"
+
+namespace fdp_stereo {
+
+/// Stage 8d: median of the disparities around a pixel, weighted by colour similarity.
+struct WeightedMedianParams {
+  int radius = 1;         ///< px; 0 = off
+  double gamma = 10.0;    ///< weight exp(-|dI|_1 / gamma), as eq. (11); 0 = plain median
+  bool only_filled = false;  ///< only on the pixels of the mask
+};
+
+/// In place; NaN neighbours do not count, NaN pixels stay. mask: CV_8UC1, non-zero = filled pixels; may be empty
+/// where only_filled is false.
+void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat& mask,
+                          const WeightedMedianParams& params);
+
+}  // namespace fdp_stereo
