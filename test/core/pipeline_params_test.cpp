@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/pipeline_params.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+namespace fdp_stereo {
+namespace {
+
+/// The message of the std::invalid_argument that `call` throws; "" where it throws none.
+template <typename Call>
+std::string messageOf(Call&& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expectContains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "'" << text << "' lacks '" << part << "'";
+}
+
+double numberOf(const ParamRef& ref) {
+  if (const auto* choice = std::get_if<EnumRef>(&ref.value)) return choice->get();
+  if (const auto* flag = std::get_if<bool*>(&ref.value)) return **flag ? 1.0 : 0.0;
+  if (const auto* integer = std::get_if<int*>(&ref.value)) return **integer;
+  return *std::get<double*>(ref.value);
+}
+
+TEST(ParamList, HasUniqueKeysWithRangeAndText) {
+  PipelineParams params;
+  std::set<std::string> keys;
+  std::set<std::string> ros_names;
+  for (const ParamRef& ref : paramList(params)) {
+    EXPECT_TRUE(keys.insert(ref.key).second) << ref.key;
+    EXPECT_TRUE(ros_names.insert(ref.ros_name).second) << ref.ros_name;
+    EXPECT_EQ(ref.ros_name.find('.'), std::string::npos) << ref.ros_name;
+    EXPECT_LT(ref.min, ref.max) << ref.key;
+    EXPECT_GE(numberOf(ref), ref.min) << ref.key;
+    EXPECT_LE(numberOf(ref), ref.max) << ref.key;
+    ASSERT_FALSE(ref.text.empty()) << ref.key;
+    EXPECT_EQ(ref.text.back(), '.') << ref.key;
+  }
+}
+
+TEST(ParamList, StagesAreContiguous) {
+  PipelineParams params;
+  std::set<std::string> finished;
+  std::string stage;
+  for (const ParamRef& ref : paramList(params)) {
+    const std::string next = ref.key.substr(0, ref.key.find('.'));
+    if (next == stage) continue;
+    EXPECT_TRUE(finished.insert(next).second) << next << " comes twice";
+    stage = next;
+  }
+}
+
+TEST(ParamList, UsesTheNamesOfStereoImageProcWhereTheMeaningIsTheSame) {
+  PipelineParams params;
+  std::set<std::string> names;
+  for (const ParamRef& ref : paramList(params)) names.insert(ref.ros_name);
+  for (const char* name :
+       {"min_disparity", "disparity_range", "uniqueness_ratio", "speckle_size", "speckle_range", "disp12MaxDiff"}) {
+    EXPECT_EQ(names.count(name), 1U) << name;
+  }
+  EXPECT_EQ(names.count("matching_cost_type"), 1U);
+}
+
+TEST(SetParam, ReachesTheField) {
+  PipelineParams params;
+  setParam(params, "search.min_disparity=-12");
+  setParam(params, "matching_cost.type", "ad_census");
+  setParam(params, "matching_cost.scale_weight_2", "0.25");
+  setParam(params, "hole_filling.enabled=true");
+  EXPECT_EQ(params.search.min, -12);
+  EXPECT_EQ(params.matching_cost.type, MatchingCostType::kAdCensus);
+  EXPECT_DOUBLE_EQ(params.matching_cost.scale_weights[1], 0.25);
+  EXPECT_TRUE(params.hole_filling.enabled);
+}
+
+TEST(SetParam, EveryEntryTakesBothEndsOfItsRangeAndNothingBeyond) {
+  PipelineParams params;
+  for (const ParamRef& ref : paramList(params)) {
+    if (std::holds_alternative<EnumRef>(ref.value) || std::holds_alternative<bool*>(ref.value)) continue;
+    for (const double end : {ref.min, ref.max}) {
+      setParam(params, ref.key,
+               std::holds_alternative<int*>(ref.value) ? std::to_string(static_cast<int>(end)) : std::to_string(end));
+      EXPECT_DOUBLE_EQ(numberOf(ref), end) << ref.key;
+    }
+    expectContains(messageOf([&] { setParam(params, ref.key, std::to_string(static_cast<int>(ref.max) + 1)); }),
+                   ref.key + " = ");
+    EXPECT_DOUBLE_EQ(numberOf(ref), ref.max) << "a refused value must not stick: " << ref.key;
+  }
+}
+
+TEST(SetParam, RefusesWhatIsNotAValue) {
+  PipelineParams params;
+  for (const char* text : {"", "abc", "12x", " 12", "1.5", "99999999999", "nan", "0x10"}) {
+    expectContains(messageOf([&] { setParam(params, "search.num_disparities", text); }),
+                   "must be an integer from 1 to 1024 px");
+  }
+  for (const char* text : {"", "nan", "inf", "1e999", "0.5 ", "0,5"}) {
+    expectContains(messageOf([&] { setParam(params, "matching_cost.alpha", text); }), "must be a number from 0 to 1");
+  }
+  expectContains(messageOf([&] { setParam(params, "optimizer.type", "sgm"); }), "one of winner_takes_all, semi_global");
+  expectContains(messageOf([&] { setParam(params, "hole_filling.enabled", "maybe"); }), "true or false");
+  expectContains(messageOf([&] { setParam(params, "hole_filling.enabled"); }), "stage.name=value");
+}
+
+TEST(SetParam, UnknownKeyNamesTheNearest) {
+  PipelineParams params;
+  EXPECT_EQ(messageOf([&] { setParam(params, "matching_cost.alhpa=1"); }),
+            "unknown parameter 'matching_cost.alhpa', did you mean 'matching_cost.alpha'?");
+  expectContains(messageOf([&] { setParam(params, "semi_globl.p1=1"); }), "'semi_global.p1'");
+}
+
+TEST(Validate, AcceptsTheDefaultsAndEveryPreset) {
+  EXPECT_NO_THROW(validate(PipelineParams{}));
+  for (const std::string& name : presetNames()) EXPECT_NO_THROW(validate(loadPreset(name))) << name;
+}
+
+TEST(Validate, NamesTheFirstKeyOutsideItsRange) {
+  PipelineParams params;
+  params.search.count = 0;
+  expectContains(messageOf([&] { validate(params); }), "search.num_disparities = '0'");
+  params.search.count = 64;
+  params.matching_cost.alpha = std::numeric_limits<double>::quiet_NaN();
+  expectContains(messageOf([&] { validate(params); }), "matching_cost.alpha");
+}
+
+TEST(Validate, RefusesValuesThatExcludeEachOther) {
+  const auto refused = [](const char* first, const char* second) {
+    PipelineParams params;
+    setParam(params, first);
+    setParam(params, second);
+    return messageOf([&] { validate(params); });
+  };
+  expectContains(refused("matching_cost.census_width=8", "matching_cost.census_height=7"), "must be odd");
+  expectContains(refused("matching_cost.census_width=11", "matching_cost.census_height=7"), "2 to 65 pixels");
+  expectContains(refused("matching_cost.census_width=1", "matching_cost.census_height=1"), "2 to 65 pixels");
+  expectContains(refused("matching_cost.bits=12", "matching_cost.scales=1"), "8 or 16");
+  expectContains(refused("semi_global.paths=5", "matching_cost.scales=1"), "4 or 8");
+  expectContains(refused("semi_global.p1=3", "semi_global.p2=2"), "semi_global.p1 = 3");
+  expectContains(refused("matching_cost.scales=1", "matching_cost.scale_weight_1=0"), "scale_weight");
+}
+
+TEST(Yaml, RoundTripsEveryParameter) {
+  PipelineParams params;
+  for (const ParamRef& ref : paramList(params)) {
+    if (const auto* choice = std::get_if<EnumRef>(&ref.value)) choice->set(static_cast<int>(ref.max));
+    if (const auto* flag = std::get_if<bool*>(&ref.value)) **flag = !**flag;
+    if (const auto* integer = std::get_if<int*>(&ref.value)) **integer = static_cast<int>(ref.max) - 1;
+    if (const auto* real = std::get_if<double*>(&ref.value)) **real = ref.min + (ref.max - ref.min) / 3.0;
+  }
+  PipelineParams loaded;
+  loadYaml(loaded, toYaml(params), "round trip");
+  const std::vector<ParamRef> expected = paramList(params);
+  const std::vector<ParamRef> actual = paramList(loaded);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(numberOf(actual[i]), numberOf(expected[i])) << actual[i].key;
+}
+
+TEST(Yaml, TakesNestedAndDottedKeysAndKeepsTheRest) {
+  PipelineParams params;
+  params.matching_cost.alpha = 0.5;
+  loadYaml(params, "semi_global: {p1: 1.5}\nsearch.num_disparities: 96\n", "mixed");
+  EXPECT_DOUBLE_EQ(params.semi_global.p1, 1.5);
+  EXPECT_EQ(params.search.count, 96);
+  EXPECT_DOUBLE_EQ(params.matching_cost.alpha, 0.5);
+  EXPECT_NO_THROW(loadYaml(params, "", "empty"));
+  EXPECT_NO_THROW(loadYaml(params, "# nothing\n", "comment"));
+}
+
+TEST(Yaml, ErrorsNameFileLineAndKey) {
+  PipelineParams params;
+  EXPECT_EQ(messageOf([&] { loadYaml(params, "search:\n  min_disparity: x\n", "a.yaml"); }),
+            "a.yaml:2: search.min_disparity = 'x': must be an integer from -1024 to 1024 px");
+  expectContains(messageOf([&] { loadYaml(params, "\nsearch.nums: 3\n", "a.yaml"); }),
+                 "a.yaml:2: unknown parameter 'search.nums'");
+  expectContains(messageOf([&] { loadYaml(params, "search: 3\n", "a.yaml"); }), "unknown parameter 'search'");
+  expectContains(messageOf([&] { loadYaml(params, "search: [1, 2]\n", "a.yaml"); }), "must be a map");
+  expectContains(messageOf([&] { loadYaml(params, "search: {min_disparity: ~}\n", "a.yaml"); }), "a.yaml:1");
+  expectContains(messageOf([&] { loadYaml(params, "just words\n", "a.yaml"); }), "must be a map");
+  expectContains(messageOf([&] { loadYaml(params, "search: {min_disparity: 1\n", "a.yaml"); }), "a.yaml:");
+  expectContains(messageOf([&] { loadYaml(params, "pipeline.threads: 1\npipeline: {threads: 2}\n", "a.yaml"); }),
+                 "twice");
+}
+
+TEST(Yaml, ARefusedFileChangesNothing) {
+  PipelineParams params;
+  EXPECT_THROW(loadYaml(params, "search.num_disparities: 96\nsearch.min_disparity: x\n", "a"), std::invalid_argument);
+  EXPECT_EQ(params.search.count, PipelineParams{}.search.count);
+}
+
+TEST(Yaml, SurvivesHostileInput) {
+  PipelineParams params;
+  EXPECT_THROW(loadYaml(params, "&a {search: *a}\n", "cycle"), std::invalid_argument);
+  EXPECT_THROW(loadYaml(params, std::string(2U << 20, 'x'), "huge"), std::invalid_argument);
+  EXPECT_THROW(loadYaml(params, std::string(10000, '['), "deep"), std::invalid_argument);
+  EXPECT_THROW(loadYaml(params, "a: !!python/object/apply:os.system ['true']\n", "tag"), std::invalid_argument);
+}
+
+TEST(Preset, PaperHasThePublishedValuesAndNoLaterStage) {
+  const PipelineParams paper = loadPreset("paper");
+  EXPECT_EQ(paper.matching_cost.scales, 3);
+  EXPECT_DOUBLE_EQ(paper.matching_cost.alpha, 0.8);
+  EXPECT_DOUBLE_EQ(paper.matching_cost.lambda_rho, 10.0);
+  EXPECT_DOUBLE_EQ(paper.matching_cost.lambda_census, 30.0);
+  EXPECT_DOUBLE_EQ(paper.feature_matching.max_ratio, 0.6);
+  EXPECT_EQ(paper.disparity_propagation.window, 5);
+  EXPECT_DOUBLE_EQ(paper.disparity_propagation.gamma, 10.0);
+  EXPECT_FALSE(paper.row_alignment.enabled);
+}
+
+TEST(Preset, ComesFromAFileToo) {
+  const std::string path = testing::TempDir() + "/preset_test.yaml";
+  std::ofstream(path) << "search.num_disparities: 33\n";
+  EXPECT_EQ(loadPreset(path).search.count, 33);
+  expectContains(messageOf([] { loadPreset("fats"); }), "fast");
+  expectContains(messageOf([] { loadPreset("/does/not/exist.yaml"); }), "/does/not/exist.yaml: cannot be read");
+  expectContains(messageOf([] { loadPreset("/"); }), "/: cannot be read");
+}
+
+}  // namespace
+}  // namespace fdp_stereo
