@@ -2,6 +2,96 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/disparity_propagation.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
 namespace fdp_stereo {
-double propagateDisparity(const Seeds&, const cv::Mat&, const DisparityPropagationParams&, CostVolume&) { return 0.0; }
+namespace {
+
+/// A seed on the pixel grid of image and volume.
+struct GridSeed {
+  int x, y, index;
+};
+
+/// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
+std::vector<GridSeed> onGrid(const Seeds& seeds, const CostVolume& volume) {
+  std::vector<GridSeed> grid;
+  for (const Seed& seed : seeds) {
+    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min};
+    const bool inside = g.x >= 0 && g.y >= 0 && g.x < volume.width() && g.y < volume.height();
+    if (inside && g.index >= 0 && g.index < volume.range().count) grid.push_back(g);
+  }
+  std::stable_sort(grid.begin(), grid.end(),
+                   [](const GridSeed& a, const GridSeed& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); });
+  return grid;
+}
+
+/// |a - b|_1 over the channels.
+int manhattan(const uchar* a, const uchar* b, int channels) {
+  int sum = 0;
+  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
+  return sum;
+}
+
+/// 2^16 (1 - w) of eq. (11) by colour distance.
+std::array<std::uint32_t, 3 * 255 + 1> makeFactors(double gamma) {
+  std::array<std::uint32_t, 3 * 255 + 1> factors{};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    factors[i] = static_cast<std::uint32_t>(std::lround(65536.0 * (1.0 - std::exp(-static_cast<double>(i) / gamma))));
+  }
+  return factors;
+}
+
+/// Algorithm 1 with rounded disparities.
+template <typename T>
+double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                        CostVolume& volume) {
+  const auto factors = makeFactors(params.gamma);
+  const int radius = params.window / 2;
+  const int channels = left.channels();
+  cv::Mat touched(left.size(), CV_8UC1, cv::Scalar(0));
+  for (const GridSeed& seed : seeds) {
+    const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
+    for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
+      for (int x = std::max(0, seed.x - radius); x <= std::min(left.cols - 1, seed.x + radius); ++x) {
+        const std::uint32_t factor = factors[manhattan(centre, left.ptr<uchar>(y) + channels * x, channels)];
+        T& raw = volume.at<T>(y, x)[seed.index];
+        raw = static_cast<T>((raw * factor + 32768U) >> 16U);
+        touched.at<uchar>(y, x) = 1;
+      }
+    }
+  }
+  return static_cast<double>(cv::countNonZero(touched)) / static_cast<double>(left.total());
+}
+
+void check(const cv::Mat& left, const DisparityPropagationParams& params, const CostVolume& volume) {
+  if (left.rows != volume.height() || left.cols != volume.width() || left.depth() != CV_8U ||
+      (left.channels() != 1 && left.channels() != 3)) {
+    throw std::invalid_argument("disparity propagation: the left image must be 8-bit with 1 or 3 channels and as large "
+                                "as the cost volume");
+  }
+  if (params.window < 1 || params.window % 2 == 0) {
+    throw std::invalid_argument("disparity propagation: window " + std::to_string(params.window) + " must be odd and >= 1");
+  }
+  if (!(params.gamma > 0.0)) {
+    throw std::invalid_argument("disparity propagation: gamma " + std::to_string(params.gamma) + " must be > 0");
+  }
+}
+
+}  // namespace
+
+double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                          CostVolume& volume) {
+  check(left, params, volume);
+  const std::vector<GridSeed> grid = onGrid(seeds, volume);
+  return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
+                                                  : propagateWindows<std::uint16_t>(grid, left, params, volume);
+}
+
 }  // namespace fdp_stereo
