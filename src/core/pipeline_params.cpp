@@ -76,6 +76,9 @@ void addFeatureMatching(ParamList& list, FeatureMatchingParams& p) {
   list.add("max_row_difference_px", p.max_row_difference_px, 0.1, 10.0, "px",
            "Matches farther off their row are dropped; raise it for cameras that are not well rectified.");
   list.add("mutual_check", p.mutual_check, "Keep a match only if it is the best one from both views.");
+  list.add("max_scale_ratio", p.max_scale_ratio, 0.0, 10.0, "",
+           "Matches whose feature sizes differ by a larger factor are dropped; 0 = no check.");
+  list.add("refine", p.refine, "Refine the right position of a match by least squares on the patches around it.");
   list.add("max_features", p.max_features, 10, 100000, "", "Features per view, the strongest first.");
 }
 
