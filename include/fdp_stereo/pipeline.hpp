@@ -46,6 +46,9 @@ class Pipeline {
 
  private:
   struct Buffers;
+  RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
+  void postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const;
+
   PipelineParams params_;
   std::unique_ptr<Optimizer> optimizer_;
   RowAlignmentAccumulator row_alignment_;

@@ -21,7 +21,7 @@ class SemiGlobal : public Optimizer {
  public:
   explicit SemiGlobal(const SemiGlobalParams& params) : params_(params) {}
   void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
-  double costHeadroom() const override { return params_.p2; }
+  double costHeadroom() const override { return params_.p1 + params_.p2; }
 
  private:
   SemiGlobalParams params_;

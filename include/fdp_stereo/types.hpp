@@ -22,10 +22,12 @@ struct DisparityRange {
   bool contains(float d) const { return d >= static_cast<float>(min) && d <= static_cast<float>(max()); }
 };
 
-/// A rectified pair of one size. CV_8UC1 or CV_8UC3 (BGR) inside the pipeline.
+/// A rectified pair of one size as the stages work on it (made by prepareImages()).
 struct StereoPair {
-  cv::Mat left;
-  cv::Mat right;
+  cv::Mat left;        ///< CV_8UC1 or CV_8UC3 (BGR)
+  cv::Mat right;       ///< the same type and size
+  cv::Mat left_grey;   ///< CV_8UC1 or CV_16UC1, the full depth of the input
+  cv::Mat right_grey;  ///< the same type and size
 };
 
 /// One feature matched between the views; positions in px, pixel centres at integers.

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/census.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/census_kernels.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+void check(const cv::Mat& grey, const CensusParams& params) {
+  if (grey.type() != CV_8UC1 && grey.type() != CV_16UC1) {
+    throw std::invalid_argument("census needs a grey image of 8 or 16 bits, not type " + std::to_string(grey.type()));
+  }
+  const bool odd = params.window_width % 2 == 1 && params.window_height % 2 == 1;
+  const int neighbours = params.window_width * params.window_height - 1;
+  if (!odd || params.window_width < 1 || params.window_height < 1 || neighbours < 1 || neighbours > 64) {
+    throw std::invalid_argument("census window " + std::to_string(params.window_width) + " x " +
+                                std::to_string(params.window_height) + ": sides must be odd, with 1 to 64 neighbours");
+  }
+}
+
+void compare(const CensusKernels& kernels, const std::uint8_t* neighbour, const std::uint8_t* centre, int count,
+             std::uint8_t* bits) {
+  kernels.compareU8(neighbour, centre, count, bits);
+}
+void compare(const CensusKernels& kernels, const std::uint16_t* neighbour, const std::uint16_t* centre, int count,
+             std::uint8_t* bits) {
+  kernels.compareU16(neighbour, centre, count, bits);
+}
+
+/// One row of codes from the rows around it, each with window_width / 2 replicated pixels on both sides.
+template <typename T>
+void censusRow(const std::vector<const T*>& rows, int width, const CensusParams& params, std::uint8_t* bits,
+               std::uint64_t* codes) {
+  const CensusKernels& kernels = FDP_STEREO_SELECT(censusKernels);
+  const int centre_row = params.window_height / 2;
+  const int centre_column = params.window_width / 2;
+  const T* centre = rows[centre_row] + centre_column;
+  std::fill(codes, codes + width, 0);
+  std::fill(bits, bits + width, 0);
+  int pending = 0;
+  for (int j = 0; j < params.window_height; ++j) {
+    for (int i = 0; i < params.window_width; ++i) {
+      if (j == centre_row && i == centre_column) continue;
+      compare(kernels, rows[j] + i, centre, width, bits);
+      if (++pending < 8) continue;
+      kernels.append(bits, width, pending, codes);
+      std::fill(bits, bits + width, 0);
+      pending = 0;
+    }
+  }
+  if (pending > 0) kernels.append(bits, width, pending, codes);
+}
+
+template <typename T>
+void census(const cv::Mat& padded, int height, int width, const CensusParams& params,
+            std::vector<std::uint64_t>& codes) {
+#pragma omp parallel
+  {
+    std::vector<std::uint8_t> bits(width);
+    std::vector<const T*> rows(params.window_height);
+#pragma omp for schedule(static)
+    for (int y = 0; y < height; ++y) {
+      for (int j = 0; j < params.window_height; ++j) rows[j] = padded.ptr<T>(y + j);
+      censusRow(rows, width, params, bits.data(), codes.data() + static_cast<std::size_t>(y) * width);
+    }
+  }
+}
+
+}  // namespace
+
+void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
+  check(grey, params);
+  codes.resize(grey.total());
+  cv::Mat padded;
+  const int border_x = params.window_width / 2;
+  const int border_y = params.window_height / 2;
+  cv::copyMakeBorder(grey, padded, border_y, border_y, border_x, border_x, cv::BORDER_REPLICATE);
+  if (grey.depth() == CV_8U) {
+    census<std::uint8_t>(padded, grey.rows, grey.cols, params, codes);
+  } else {
+    census<std::uint16_t>(padded, grey.rows, grey.cols, params, codes);
+  }
+}
+
+}  // namespace fdp_stereo

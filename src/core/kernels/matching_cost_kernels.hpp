@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "simd.hpp"
+
+namespace fdp_stereo {
+
+/// Inner loops of stage 4, compiled per instruction set. All work on the disparities of one pixel: entry i belongs to
+/// the right pixel right[i], the right row being stored from right to left.
+struct MatchingCostKernels {
+  /// sums[i] = sum over the planes of |left[c] - right[c * plane_stride + i]|, at most `limit`.
+  void (*absoluteDifferences)(const std::int16_t* left, const std::int16_t* right, int planes, int plane_stride,
+                              int count, std::uint16_t limit, std::uint16_t* sums);
+  /// Birchfield-Tomasi: left and right hold three planes (value, smallest and largest within half a pixel).
+  void (*birchfieldTomasi)(const std::int16_t* left, const std::int16_t* right, int plane_stride, int count,
+                           std::uint16_t limit, std::uint16_t* sums);
+  /// sums[i] (+)= weight * popcount(left ^ right[i]).
+  void (*hamming)(std::uint64_t left, const std::uint64_t* right, int count, std::uint16_t weight, bool first,
+                  std::uint16_t* sums);
+  /// costs[i] = (table_a[a[i]] + table_b[b[i]] + half) >> shift. Tables of fixed-point costs.
+  void (*combineU8)(const std::uint16_t* a, const std::uint16_t* table_a, const std::uint16_t* b,
+                    const std::uint16_t* table_b, int count, int shift, std::uint8_t* costs);
+  void (*combineU16)(const std::uint16_t* a, const std::uint16_t* table_a, const std::uint16_t* b,
+                     const std::uint16_t* table_b, int count, int shift, std::uint16_t* costs);
+};
+FDP_STEREO_DECLARE_KERNELS(MatchingCostKernels, matchingCostKernels)
+
+}  // namespace fdp_stereo

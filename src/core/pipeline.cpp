@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include <omp.h>
+
+#include "fdp_stereo/image_preparation.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Times one stage after another.
+class StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
+  void done(const char* stage) {
+    const auto now = Clock::now();
+    times_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
+    start_ = now;
+  }
+
+ private:
+  std::vector<StageTime>& times_;
+  Clock::time_point start_;
+};
+
+/// Uses a number of OpenMP threads for as long as it lives.
+class ThreadScope {
+ public:
+  explicit ThreadScope(int threads) : before_(omp_get_max_threads()) {
+    omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs());
+  }
+  ~ThreadScope() { omp_set_num_threads(before_); }
+  ThreadScope(const ThreadScope&) = delete;
+  ThreadScope& operator=(const ThreadScope&) = delete;
+
+ private:
+  int before_;
+};
+
+std::unique_ptr<Optimizer> makeOptimizer(const PipelineParams& params) {
+  switch (params.optimizer) {
+    case OptimizerType::kWinnerTakesAll: return std::make_unique<WinnerTakesAll>(params.winner_takes_all);
+    case OptimizerType::kSemiGlobal: return std::make_unique<SemiGlobal>(params.semi_global);
+    default: throw std::invalid_argument("optimizer.type local_expansion is not available");
+  }
+}
+
+/// The finest cost step with which a path cost of the optimiser still fits the bits of the volume.
+float costStep(const PipelineParams& params, const Optimizer& optimizer) {
+  const double steps = params.matching_cost.bits == 8 ? 252.0 : 8188.0;
+  return static_cast<float>((maxMatchingCost(params.matching_cost) + optimizer.costHeadroom()) / steps);
+}
+
+void checkMemory(const PipelineParams& params, cv::Size size) {
+  const double cells = static_cast<double>(size.area()) * (params.search.count + CostVolume::kPadding);
+  const double mb = cells * (params.matching_cost.bits / 8.0 + 2.0) / 1e6;
+  if (mb <= params.max_memory_mb) return;
+  throw std::invalid_argument("a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +
+                              std::to_string(params.search.count) + " disparities needs about " +
+                              std::to_string(static_cast<int>(mb)) + " MB, above pipeline.max_memory_mb = " +
+                              std::to_string(static_cast<int>(params.max_memory_mb)) +
+                              ": reduce search.num_disparities or raise the limit");
+}
+
+}  // namespace
+
+struct Pipeline::Buffers {
+  CostVolume volume;
+  OptimizerOutput optimized;
+};
+
+Pipeline::Pipeline(const PipelineParams& params) : buffers_(std::make_unique<Buffers>()) { setParams(params); }
+Pipeline::~Pipeline() = default;
+
+void Pipeline::setParams(const PipelineParams& params) {
+  validate(params);
+  optimizer_ = makeOptimizer(params);
+  params_ = params;
+}
+
+void Pipeline::reset() {
+  row_alignment_.reset();
+  optimizer_->reset();
+}
+
+PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Seeds& external,
+                             const std::atomic<bool>* cancel) {
+  const ThreadScope threads(params_.threads);
+  PipelineResult result;
+  StageClock clock(result.times);
+  StereoPair pair = prepareImages(left, right);
+  checkMemory(params_, pair.left.size());
+  clock.done("image_preparation");
+
+  result.matches = matchFeatures(pair, params_.search, params_.feature_matching);
+  clock.done("feature_matching");
+
+  result.row_alignment = alignPair(result.matches, pair);
+  clock.done("row_alignment");
+
+  CostVolume& volume = buffers_->volume;
+  computeMatchingCost(pair, params_.search, params_.matching_cost, costStep(params_, *optimizer_), volume);
+  clock.done("matching_cost");
+
+  SparseDisparity sparse =
+      buildSparseDisparity(result.matches, external, pair, params_.search, params_.sparse_disparity);
+  result.seeds = std::move(sparse.seeds);
+  result.rejected_seeds = std::move(sparse.rejected);
+  clock.done("sparse_disparity");
+
+  if (params_.disparity_propagation.enabled) {
+    result.propagated_share = propagateDisparity(result.seeds, pair.left, params_.disparity_propagation, volume);
+  }
+  clock.done("disparity_propagation");
+
+  OptimizerOutput& optimized = buffers_->optimized;
+  optimizer_->optimize({volume, pair, result.seeds, cancel}, optimized);
+  result.energies = optimized.energies;
+  clock.done("optimizer");
+
+  postProcess(pair, optimized, result);
+  clock.done("post_processing");
+  return result;
+}
+
+RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
+  if (!params_.row_alignment.enabled) return {};
+  const cv::Size size = pair.left.size();
+  RowAlignment alignment = params_.row_alignment.mode == RowAlignmentMode::kAccumulate
+                               ? row_alignment_.update(matches, size, params_.row_alignment)
+                               : estimateRowAlignment(matches, size, params_.row_alignment);
+  const bool shared = pair.right.data == pair.right_grey.data;
+  pair.right = alignRows(pair.right, alignment.model);
+  pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);
+  return alignment;
+}
+
+void Pipeline::postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const {
+  cv::Mat disparity = optimized.disparity_left.clone();
+  if (params_.left_right_check.enabled && !optimized.disparity_right.empty()) {
+    checkLeftRight(disparity, optimized.disparity_right, params_.left_right_check);
+  }
+  filterSpeckles(disparity, params_.speckle_filter);
+  const cv::Mat holes = disparity != disparity;
+  if (params_.hole_filling.enabled) fillHoles(disparity);
+  filterWeightedMedian(disparity, pair.left, holes, params_.weighted_median);
+  result.disparity = disparity;
+  result.confidence = optimized.confidence.clone();
+  result.confidence.setTo(0.0F, disparity != disparity);
+}
+
+}  // namespace fdp_stereo
