@@ -14,4 +14,6 @@ function(fdp_stereo_add_tool name)
   endif()
 endfunction()
 
-fdp_stereo_add_tool(match tools/match.cpp)
+if(EXISTS ${PROJECT_SOURCE_DIR}/tools/match.cpp)
+  fdp_stereo_add_tool(match tools/match.cpp)
+endif()

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fdp_stereo/pipeline_params.hpp"
@@ -15,6 +16,7 @@ struct PipelineResult {
   cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
   cv::Mat confidence;  ///< CV_32FC1, 0..1
   FeatureMatches matches;
+  std::string feature_note;  ///< why another detector than the wanted one ran; empty otherwise
   Seeds seeds;
   Seeds rejected_seeds;
   RowAlignment row_alignment;

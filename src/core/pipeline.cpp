@@ -100,7 +100,9 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   checkMemory(params_, pair.left.size());
   clock.done("image_preparation");
 
-  result.matches = matchFeatures(pair, params_.search, params_.feature_matching);
+  FeatureMatching features = matchFeatures(pair, params_.search, params_.feature_matching);
+  result.matches = std::move(features.matches);
+  result.feature_note = std::move(features.note);
   clock.done("feature_matching");
 
   result.row_alignment = alignPair(result.matches, pair);
