@@ -3,22 +3,38 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "fdp_stereo/types.hpp"
 
 namespace fdp_stereo {
 
 constexpr std::array<double, 5> kBadThresholdsPx = {0.125, 0.25, 0.5, 1.0, 2.0};
+constexpr double kMaxErrorPx = 100.0;  ///< an error counts at most this much in the average
 
 /// Errors over the scored pixels that have a truth; a pixel without answer counts as bad. Shares in %.
 struct DisparityErrors {
-  std::array<double, 5> bad{};
-  double density = 0.0;
+  std::array<double, 5> bad{};     ///< share with an error above each of kBadThresholdsPx
+  double density = 0.0;            ///< share with an answer
   double sparse_bad_half = 100.0;  ///< bad 0.5 among the answered
-  double average_px = 100.0;       ///< mean error of the answered, each capped at 100 px
+  double average_px = 100.0;       ///< mean error of the answered, each capped at kMaxErrorPx
 };
 
-/// mask: CV_8UC1, 255 = scored, or empty = all. Throws std::invalid_argument when the sizes differ.
+/// Compares two maps of one size, CV_32FC1 px; in `disparity` NaN, infinity and negative values are no answer, in
+/// `truth` NaN is unknown. mask: CV_8UC1, 255 = scored, or empty = all. Throws std::invalid_argument when sizes or
+/// types differ or no pixel can be scored.
 DisparityErrors evaluateDisparity(const cv::Mat& disparity, const cv::Mat& truth, const cv::Mat& mask);
+
+/// Mean of several scenes' errors, each times its weight. Throws std::invalid_argument for no scene or no weight above
+/// 0.
+DisparityErrors averageErrors(const std::vector<DisparityErrors>& errors, const std::vector<double>& weights);
+
+/// Weight of a scene in the Middlebury V3 average: 0.5 for PianoL, Playroom, Playtable, Shelves and Vintage, else 1.
+double middleburyWeight(const std::string& scene_name);
+
+/// Errors as colours, CV_8UC3: blue (none) over white (1 px) to red (4 px and more), black = no truth, dark where
+/// the mask is not 255, magenta = no answer.
+cv::Mat colorizeErrors(const cv::Mat& disparity, const cv::Mat& truth, const cv::Mat& mask);
 
 }  // namespace fdp_stereo

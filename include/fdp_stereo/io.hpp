@@ -8,14 +8,32 @@
 
 namespace fdp_stereo {
 
-/// Reads a disparity map: .pfm (Pf; inf = none) or .png (16 bit; value / png_scale, 0 = none). CV_32FC1, NaN = none.
-/// Throws std::runtime_error naming the file and what is wrong with it.
+/// Longest side of an image or map that is read, px; a header that claims more is refused before anything is allocated.
+constexpr int kMaxImageSide = 32768;
+
+/// Reads a disparity map, H x W, CV_32FC1 px, NaN = none: .pfm (one channel, either byte order; a value that is not
+/// finite = none) or .png (grey, 16 or 8 bit; value / png_scale, 0 = none). Throws std::runtime_error naming the file
+/// and what is wrong with it: missing, truncated, another type, a side beyond kMaxImageSide.
 cv::Mat readDisparity(const std::string& path, double png_scale = 256.0);
-/// Writes by extension: .pfm (inf = none) or .png (16 bit x 256, 0 = none).
+/// Writes CV_32FC1 px by extension: .pfm (float, inf = none) or .png (16 bit x 256, 0 = none; a disparity below 1/256
+/// px becomes 1/256). Throws std::runtime_error for another extension, a file that cannot be written, or a map that PNG
+/// cannot hold (negative, or 256 px and more).
 void writeDisparity(const std::string& path, const cv::Mat& disparity);
-/// Reads an image as it is (8 or 16 bit, 1 or 3 channels). Throws std::runtime_error naming the file.
+
+/// Reads an image as it is: CV_8U or CV_16U, 1 or 3 (BGR; transparency dropped) channels. Throws std::runtime_error
+/// naming the file and what is wrong with it.
 cv::Mat readImage(const std::string& path);
-/// Disparity to colours (turbo), black = none; CV_8UC3.
+/// Writes an image by the extension of `path`. Throws std::runtime_error naming the file.
+void writeImage(const std::string& path, const cv::Mat& image);
+
+/// Reads seeds of the left image: .pfm or .png like readDisparity(), one seed per pixel that has a disparity; else
+/// text, one "x y d [trust]" per line in px, trust 0..1 (1 if left out), '#' begins a comment. Throws
+/// std::runtime_error naming file and line.
+Seeds readSeeds(const std::string& path);
+
+/// Disparity to colours (turbo, red = near), black = none; CV_8UC3.
 cv::Mat colorize(const cv::Mat& disparity, DisparityRange range);
+/// Confidence (CV_32FC1, 0..1) to grey levels 0..255; CV_8UC1, NaN = 0.
+cv::Mat confidenceToGrey(const cv::Mat& confidence);
 
 }  // namespace fdp_stereo
