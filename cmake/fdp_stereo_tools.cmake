@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Command-line tools. With catkin they land in devel/lib/fdp_stereo, where rosrun finds them.
+add_library(fdp_stereo_tool_support STATIC tools/command_line.cpp tools/process_memory.cpp)
+target_link_libraries(fdp_stereo_tool_support PUBLIC fdp_stereo_core CLI11::CLI11)
+
 function(fdp_stereo_add_tool name)
   add_executable(${name} ${ARGN})
-  target_link_libraries(${name} PRIVATE fdp_stereo_core CLI11::CLI11)
+  target_link_libraries(${name} PRIVATE fdp_stereo_tool_support)
   if(CATKIN_DEVEL_PREFIX)
     set_target_properties(${name} PROPERTIES
       RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
@@ -14,6 +17,4 @@ function(fdp_stereo_add_tool name)
   endif()
 endfunction()
 
-if(EXISTS ${PROJECT_SOURCE_DIR}/tools/match.cpp)
-  fdp_stereo_add_tool(match tools/match.cpp)
-endif()
+fdp_stereo_add_tool(match tools/match.cpp)

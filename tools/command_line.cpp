@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <opencv2/core/utils/logger.hpp>
+#include <sstream>
+
+namespace fdp_stereo {
+namespace {
+
+constexpr int kBadInput = 1;
+constexpr int kBadUsage = 2;
+
+int complain(const CLI::App& app, std::string message, int code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::cerr << app.get_name() << ": " << message << (code == kBadUsage ? " (see --help)" : "") << std::endl;
+  return code;
+}
+
+std::string rangeText(const ParamRef& ref) {
+  if (const auto* choice = std::get_if<EnumRef>(&ref.value)) {
+    std::string names;
+    for (const std::string& name : choice->names) names += (names.empty() ? "" : "|") + name;
+    return names;
+  }
+  if (std::holds_alternative<bool*>(ref.value)) return "true|false";
+  std::ostringstream text;
+  text << ref.min << ".." << ref.max << (ref.unit.empty() ? "" : " " + ref.unit);
+  return text.str();
+}
+
+}  // namespace
+
+void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
+  app.add_option("--min-disparity", options.min_disparity, "Smallest disparity searched, px (search.min_disparity)");
+  app.add_option("--num-disparities", options.num_disparities,
+                 "Number of disparities searched, px (search.num_disparities)");
+  app.add_option("--threads", options.threads, "Threads, 0 = all cores (pipeline.threads)");
+  app.add_option("--set", options.assignments, "Set one parameter: stage.key=value; may be given again")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--fill", options.fill, "Fill pixels without disparity (hole_filling.enabled=true)");
+  app.add_flag_callback(
+      "--list-parameters",
+      [] {
+        std::cout << describeParams();
+        throw CLI::Success();
+      },
+      "Print every parameter that --set takes and exit");
+}
+
+PipelineParams resolveParams(const std::string& preset, const PipelineOptions& options) {
+  try {
+    PipelineParams params = loadPreset(preset);
+    const auto set = [&](const char* key, const std::optional<int>& value) {
+      if (value) setParam(params, key, std::to_string(*value));
+    };
+    set("search.min_disparity", options.min_disparity);
+    set("search.num_disparities", options.num_disparities);
+    set("pipeline.threads", options.threads);
+    for (const std::string& assignment : options.assignments) setParam(params, assignment);
+    if (options.fill) params.hole_filling.enabled = true;
+    validate(params);
+    return params;
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+}
+
+std::string describeParams() {
+  PipelineParams defaults;
+  std::ostringstream text;
+  for (const ParamRef& ref : paramList(defaults)) {
+    text << ref.key << " = " << toString(ref) << "  (" << rangeText(ref) << ")\n    " << ref.text << '\n';
+  }
+  return text.str();
+}
+
+int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  try {
+    app.parse(argc, argv);
+    return run();
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return 0;
+  } catch (const CLI::Success&) {
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return complain(app, error.what(), kBadUsage);
+  } catch (const UsageError& error) {
+    return complain(app, error.what(), kBadUsage);
+  } catch (const std::bad_alloc&) {
+    return complain(app, "out of memory", kBadInput);
+  } catch (const std::exception& error) {
+    return complain(app, error.what(), kBadInput);
+  }
+}
+
+}  // namespace fdp_stereo
