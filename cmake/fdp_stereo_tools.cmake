@@ -18,3 +18,16 @@ function(fdp_stereo_add_tool name)
 endfunction()
 
 fdp_stereo_add_tool(match tools/match.cpp)
+
+find_package(Threads REQUIRED)
+add_library(fdp_stereo_evaluation STATIC
+  tools/evaluation/method.cpp
+  tools/evaluation/pictures.cpp
+  tools/evaluation/progress.cpp
+  tools/evaluation/result.cpp
+  tools/evaluation/runner.cpp
+)
+target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/tools)
+target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_tool_support Threads::Threads)
+fdp_stereo_add_tool(evaluate tools/evaluate.cpp)
+target_link_libraries(evaluate PRIVATE fdp_stereo_evaluation)

@@ -31,6 +31,8 @@ void writeImage(const std::string& path, const cv::Mat& image);
 /// std::runtime_error naming file and line.
 Seeds readSeeds(const std::string& path);
 
+/// 255 where a CV_32FC1 map is NaN, 0 elsewhere; CV_8UC1.
+cv::Mat noneMask(const cv::Mat& map);
 /// Disparity to colours (turbo, red = near), black = none; CV_8UC3.
 cv::Mat colorize(const cv::Mat& disparity, DisparityRange range);
 /// Confidence (CV_32FC1, 0..1) to grey levels 0..255; CV_8UC1, NaN = 0.

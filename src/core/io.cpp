@@ -173,9 +173,20 @@ void checkIfPng(const std::string& path) {
   checkPng(file, path);
 }
 
+/// One channel of a picture that stores grey as three equal ones.
+cv::Mat greyOf(const cv::Mat& picture, const std::string& path) {
+  std::array<cv::Mat, 3> channels;
+  cv::split(picture, channels.data());
+  if (cv::norm(channels[0], channels[1], cv::NORM_INF) > 0.0 ||
+      cv::norm(channels[1], channels[2], cv::NORM_INF) > 0.0) {
+    fail(path, "a disparity PNG must be grey");
+  }
+  return channels[0];
+}
+
 cv::Mat readPngDisparity(const std::string& path, double scale) {
   cv::Mat raw = readImage(path);
-  if (raw.channels() != 1) fail(path, "a disparity PNG must be grey");
+  if (raw.channels() == 3) raw = greyOf(raw, path);
   raw.convertTo(raw, CV_32F);
   for (int y = 0; y < raw.rows; ++y) {
     float* row = raw.ptr<float>(y);
@@ -288,6 +299,11 @@ Seeds readSeeds(const std::string& path) {
   return seeds;
 }
 
+cv::Mat noneMask(const cv::Mat& map) {
+  // Not map != map: OpenCV compares four values at once with an instruction for which NaN differs from nothing.
+  return ~(map == map);
+}
+
 cv::Mat colorize(const cv::Mat& disparity, DisparityRange range) {
   cv::Mat grey(disparity.size(), CV_8UC1);
   const float span = static_cast<float>(std::max(1, range.count - 1));
@@ -300,14 +316,14 @@ cv::Mat colorize(const cv::Mat& disparity, DisparityRange range) {
   }
   cv::Mat colors;
   cv::applyColorMap(grey, colors, cv::COLORMAP_TURBO);
-  colors.setTo(cv::Scalar::all(0), disparity != disparity);
+  colors.setTo(cv::Scalar::all(0), noneMask(disparity));
   return colors;
 }
 
 cv::Mat confidenceToGrey(const cv::Mat& confidence) {
   cv::Mat grey;
   confidence.convertTo(grey, CV_8U, 255.0);
-  grey.setTo(0, confidence != confidence);
+  grey.setTo(0, noneMask(confidence));
   return grey;
 }
 

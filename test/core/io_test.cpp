@@ -132,6 +132,14 @@ TEST(PngDisparity, UsesTheScaleOfTheFile) {
   EXPECT_THROW(readDisparity(path, 0.0), std::invalid_argument);
 }
 
+TEST(PngDisparity, TakesGreyStoredAsColour) {
+  const std::string path = tempPath("color.png");
+  ASSERT_TRUE(cv::imwrite(path, cv::Mat(2, 2, CV_8UC3, cv::Scalar(40, 40, 40))));
+  EXPECT_FLOAT_EQ(readDisparity(path, 4.0).at<float>(0, 0), 10.0F);
+  ASSERT_TRUE(cv::imwrite(path, cv::Mat(2, 2, CV_8UC3, cv::Scalar(40, 41, 40))));
+  expectContains(errorOf([&] { readDisparity(path); }), "must be grey");
+}
+
 TEST(PngDisparity, RefusesWhatItCannotHold) {
   const auto error = [](float d) {
     return errorOf([&] { writeDisparity(tempPath("hold.png"), cv::Mat(1, 1, CV_32FC1, cv::Scalar(d))); });
@@ -213,6 +221,16 @@ TEST(Seeds, ReadsMaps) {
   EXPECT_FLOAT_EQ(seeds[1].x, 1.0F);
   EXPECT_FLOAT_EQ(seeds[1].y, 1.0F);
   EXPECT_FLOAT_EQ(seeds[1].d, 2.0F);
+}
+
+TEST(NoneMask, FindsNanAtEveryColumn) {
+  cv::Mat map(3, 41, CV_32FC1, cv::Scalar(1.0));
+  for (int x = 0; x < map.cols; x += 3) map.at<float>(1, x) = kInvalidDisparity;
+  const cv::Mat mask = noneMask(map);
+  for (int x = 0; x < map.cols; ++x) {
+    EXPECT_EQ(mask.at<std::uint8_t>(1, x), x % 3 == 0 ? 255 : 0) << x;
+    EXPECT_EQ(mask.at<std::uint8_t>(0, x), 0) << x;
+  }
 }
 
 TEST(Colorize, NoneIsBlackAndNearIsRed) {

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// evaluate SCENES...: error, time and memory of presets, variants and OpenCV's matchers on scenes with known truth.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+#include "command_line.hpp"
+#include "evaluation/method.hpp"
+#include "evaluation/result.hpp"
+#include "evaluation/runner.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<std::string> presets;
+  std::vector<std::string> variants;
+  bool peers = false;
+  std::string csv;
+  std::string shard;
+  RunOptions run;
+  PipelineOptions pipeline;
+};
+
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("SCENES", options.scenes, "Middlebury or KITTI folders, or folders of such")->required();
+  app.add_option("--preset", options.presets, "Presets by name or YAML file; may be given again (default: fast)")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--variant", options.variants, "A further set of parameters to compare; may be given again")
+      ->type_name("NAME=PRESET[,KEY=VALUE...]")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--peers", options.peers, "Run OpenCV's StereoSGBM (HH, 3WAY) and StereoBM beside them");
+  addPipelineOptions(app, options.pipeline);
+  app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
+  app.add_option("--csv", options.csv, "Write the table as CSV");
+  app.add_option("--report", options.run.folder,
+                 "Write pictures and tables here; goes on where an earlier run stopped");
+  app.add_option("--jobs", options.run.jobs, "Scenes at once; above 1 times are disturbed, CPU and memory unknown")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--shard", options.shard, "Do only the i-th of n parts of the scenes, 'i/n'; needs --report");
+  app.footer(
+      "Exit codes: 0 done, 1 a scene failed (the others are done all the same), 2 the command line is at fault.");
+}
+
+void parseShard(const std::string& text, RunOptions& run) {
+  if (text.empty()) return;
+  char slash = 0;
+  std::istringstream in(text);
+  in >> run.shard_index >> slash >> run.shard_count;
+  if (!in || slash != '/' || !in.eof() || run.shard_index < 1 || run.shard_index > run.shard_count) {
+    throw UsageError("--shard '" + text + "': must be i/n with 1 <= i <= n");
+  }
+  if (run.folder.empty()) throw UsageError("--shard needs --report, where the parts meet");
+}
+
+std::vector<Method> chooseMethods(const Options& options) {
+  std::vector<Method> methods;
+  std::vector<std::string> presets = options.presets;
+  if (presets.empty() && options.variants.empty()) presets = {"fast"};
+  for (const std::string& preset : presets) {
+    methods.push_back(pipelineMethod(fs::path(preset).stem().string(), preset, options.pipeline));
+  }
+  for (const std::string& variant : options.variants) methods.push_back(variantMethod(variant, options.pipeline));
+  if (options.peers) {
+    for (Method& peer : peerMethods(options.pipeline.fill)) methods.push_back(std::move(peer));
+  }
+  std::set<std::string> names;
+  for (const Method& method : methods) {
+    if (method.name.empty() || method.name.find_first_of("/\\\"<>&, ") != std::string::npos) {
+      throw UsageError("'" + method.name + "' cannot be the name of a method: use letters, digits, '_', '-', '+', '.'");
+    }
+    if (!names.insert(method.name).second) throw UsageError("two methods are called '" + method.name + "'");
+  }
+  return methods;
+}
+
+int reportFailures(const std::vector<Failure>& failures) {
+  for (const Failure& failure : failures) std::cerr << "evaluate: " << failure.scene << ": " << failure.problem << '\n';
+  return failures.empty() ? 0 : 1;
+}
+
+int evaluate(Options& options) {
+  parseShard(options.shard, options.run);
+  const RunOutcome outcome = runMethods(options.scenes, chooseMethods(options), options.run);
+  if (!outcome.rows.empty()) std::cout << tableText(outcome.rows);
+  if (!options.csv.empty()) writeCsv(options.csv, outcome.rows);
+  return reportFailures(outcome.failures);
+}
+
+}  // namespace
+}  // namespace fdp_stereo
+
+int main(int argc, char** argv) {
+  CLI::App app("Disparity errors on scenes with known truth", "evaluate");
+  fdp_stereo::Options options;
+  fdp_stereo::addOptions(app, options);
+  return fdp_stereo::runTool(app, argc, argv, [&] { return fdp_stereo::evaluate(options); });
+}

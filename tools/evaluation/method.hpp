@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+#include "fdp_stereo/pipeline.hpp"
+#include "fdp_stereo/scene.hpp"
+
+namespace fdp_stereo {
+
+/// A stereo method that can be run on a scene: a set of our parameters, or a peer.
+struct Method {
+  std::string name;
+  std::string settings;  ///< all that its result depends on, as text
+  std::function<PipelineResult(const Scene&)> run;
+};
+
+/// Our pipeline with a preset and the options over it. The scene gives the range unless the options do.
+Method pipelineMethod(const std::string& name, const std::string& preset, const PipelineOptions& options);
+
+/// "NAME=PRESET[,stage.key=value...]", the options applying first. Throws UsageError.
+Method variantMethod(const std::string& text, const PipelineOptions& options);
+
+/// OpenCV's StereoSGBM (MODE_HH block 3; MODE_SGBM_3WAY block 5, uniqueness 10, speckles 100/2) and StereoBM (block 15,
+/// uniqueness 15, speckles 100/4), the number of disparities rounded up to 16.
+std::vector<Method> peerMethods(bool fill);
+
+}  // namespace fdp_stereo

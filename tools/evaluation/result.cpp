@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+namespace fdp_stereo {
+namespace {
+
+template <std::size_t kIndex>
+Column badColumn(const char* name, const char* heading) {
+  return {name, heading, true, [](const ResultRow& row) { return row.errors.bad[kIndex]; },
+          [](ResultRow& row, double value) { row.errors.bad[kIndex] = value; }};
+}
+
+#define FDP_STEREO_COLUMN(name, heading, smaller, member)                    \
+  Column {                                                                   \
+    name, heading, smaller, [](const ResultRow& row) { return row.member; }, \
+        [](ResultRow& row, double value) { row.member = value; }             \
+  }
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "";
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(10) << value;
+  return text.str();
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+std::vector<std::string> splitCsv(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && inside && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += line[++i];
+    } else if (line[i] == '"') {
+      inside = !inside;
+    } else if (line[i] == ',' && !inside) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  return fields;
+}
+
+ResultRow parseRow(const std::string& line) {
+  const std::vector<Column>& columns = resultColumns();
+  const std::vector<std::string> fields = splitCsv(line);
+  if (fields.size() != columns.size() + 3) throw std::invalid_argument("number of fields");
+  ResultRow row;
+  row.scene = fields[0];
+  row.method = fields[1];
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& text = fields[i + 2];
+    columns[i].set(row, text.empty() ? kUnknown : std::stod(text));
+  }
+  row.settings = fields.back();
+  return row;
+}
+
+ResultRow averageOf(const std::vector<const ResultRow*>& rows) {
+  ResultRow mean = *rows.front();
+  mean.scene = "mean of " + std::to_string(rows.size());
+  double total = 0.0;
+  for (const ResultRow* row : rows) total += middleburyWeight(row->scene);
+  for (const Column& column : resultColumns()) {
+    double sum = 0.0;
+    for (const ResultRow* row : rows) sum += middleburyWeight(row->scene) * column.get(*row);
+    column.set(mean, sum / total);
+  }
+  return mean;
+}
+
+void printRow(std::ostringstream& out, const ResultRow& row, std::size_t scene_width, std::size_t method_width) {
+  out << std::left << std::setw(static_cast<int>(scene_width)) << row.scene << std::setw(static_cast<int>(method_width))
+      << row.method << std::right << std::fixed << std::setprecision(2);
+  for (const Column& column : resultColumns()) {
+    const double value = column.get(row);
+    out << std::setw(10);
+    std::isfinite(value) ? out << value : out << "-";
+  }
+  out << '\n';
+}
+
+}  // namespace
+
+const std::vector<Column>& resultColumns() {
+  static const std::vector<Column> columns = {
+      badColumn<0>("bad_0.125", "bad .125"),
+      badColumn<1>("bad_0.25", "bad .25"),
+      badColumn<2>("bad_0.5", "bad .5"),
+      badColumn<3>("bad_1", "bad 1"),
+      badColumn<4>("bad_2", "bad 2"),
+      FDP_STEREO_COLUMN("density", "density", false, errors.density),
+      FDP_STEREO_COLUMN("sparse_bad_0.5", "sparse .5", true, errors.sparse_bad_half),
+      FDP_STEREO_COLUMN("average_px", "avg px", true, errors.average_px),
+      FDP_STEREO_COLUMN("time_ms", "ms", true, time_ms),
+      FDP_STEREO_COLUMN("cpu_ms", "CPU ms", true, cpu_ms),
+      FDP_STEREO_COLUMN("memory_mb", "MB", true, memory_mb),
+      FDP_STEREO_COLUMN("seeds", "seeds", false, seeds),
+      FDP_STEREO_COLUMN("seeds_wrong", "wrong %", true, seeds_wrong),
+      FDP_STEREO_COLUMN("rows_before_px", "rows px", true, rows_before_px),
+      FDP_STEREO_COLUMN("rows_after_px", "after px", true, rows_after_px),
+  };
+  return columns;
+}
+
+std::vector<ResultRow> readCsv(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path + ": cannot be read");
+  std::vector<ResultRow> rows;
+  std::string line;
+  for (int count = 1; std::getline(file, line); ++count) {
+    if (count == 1 && line != csvHeader()) throw std::runtime_error(path + ":1: is no table of this version");
+    if (count == 1 || line.empty()) continue;
+    try {
+      rows.push_back(parseRow(line));
+    } catch (const std::logic_error&) {
+      throw std::runtime_error(path + ":" + std::to_string(count) + ": is no row of a table");
+    }
+  }
+  return rows;
+}
+
+std::string csvHeader() {
+  std::string header = "scene,method";
+  for (const Column& column : resultColumns()) header += std::string(",") + column.name;
+  return header + ",settings";
+}
+
+std::string csvLine(const ResultRow& row) {
+  std::string line = quoted(row.scene) + "," + quoted(row.method);
+  for (const Column& column : resultColumns()) line += "," + number(column.get(row));
+  return line + "," + row.settings;
+}
+
+void writeCsv(const std::string& path, const std::vector<ResultRow>& rows) {
+  std::ofstream file(path);
+  file << csvHeader() << '\n';
+  for (const ResultRow& row : rows) file << csvLine(row) << '\n';
+  file.close();
+  if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+std::vector<ResultRow> averageRows(const std::vector<ResultRow>& rows) {
+  std::vector<std::string> methods;
+  for (const ResultRow& row : rows) {
+    if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
+  }
+  std::vector<ResultRow> averages;
+  for (const std::string& method : methods) {
+    std::vector<const ResultRow*> own;
+    for (const ResultRow& row : rows) {
+      if (row.method == method) own.push_back(&row);
+    }
+    averages.push_back(averageOf(own));
+  }
+  return averages;
+}
+
+std::string tableText(const std::vector<ResultRow>& rows) {
+  std::size_t scene_width = 14;
+  std::size_t method_width = 11;
+  for (const ResultRow& row : rows) {
+    scene_width = std::max(scene_width, row.scene.size() + 2);
+    method_width = std::max(method_width, row.method.size() + 2);
+  }
+  std::ostringstream out;
+  out << std::left << std::setw(static_cast<int>(scene_width)) << "scene" << std::setw(static_cast<int>(method_width))
+      << "method" << std::right;
+  for (const Column& column : resultColumns()) out << std::setw(10) << column.heading;
+  out << '\n';
+  for (const ResultRow& row : rows) printRow(out, row, scene_width, method_width);
+  for (const ResultRow& row : averageRows(rows)) printRow(out, row, scene_width, method_width);
+  return out.str();
+}
+
+std::string fingerprint(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 1099511628211ULL;
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(hash));
+  return hex;
+}
+
+}  // namespace fdp_stereo

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/runner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "evaluation/pictures.hpp"
+#include "evaluation/progress.hpp"
+#include "process_memory.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A scene to run, or the reason why there is none.
+struct Task {
+  SceneFiles files;
+  std::string problem;
+};
+
+std::vector<Task> collectTasks(const std::vector<std::string>& paths, const RunOptions& options) {
+  std::vector<Task> all;
+  for (const std::string& path : paths) {
+    try {
+      for (SceneFiles& files : findScenes(path)) all.push_back({std::move(files), ""});
+    } catch (const std::exception& error) {
+      SceneFiles files;
+      files.name = path;
+      all.push_back({files, error.what()});
+    }
+  }
+  std::set<std::string> names;
+  std::vector<Task> own;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!names.insert(all[i].files.name).second) all[i].problem = all[i].files.left + ": another scene has its name";
+    if (static_cast<int>(i) % options.shard_count == options.shard_index - 1) own.push_back(all[i]);
+  }
+  return own;
+}
+
+double cpuMs() { return 1000.0 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Share in % of the seeds on a pixel with truth that are off by more than 1 px.
+double wrongSeeds(const Seeds& seeds, const cv::Mat& truth) {
+  int known = 0;
+  int wrong = 0;
+  for (const Seed& seed : seeds) {
+    const cv::Point pixel(cvRound(seed.x), cvRound(seed.y));
+    if (!cv::Rect(cv::Point(), truth.size()).contains(pixel) || std::isnan(truth.at<float>(pixel))) continue;
+    ++known;
+    if (std::abs(seed.d - truth.at<float>(pixel)) > 1.0F) ++wrong;
+  }
+  return known > 0 ? 100.0 * wrong / known : kUnknown;
+}
+
+/// Time, CPU time and memory of one call.
+class Meter {
+ public:
+  explicit Meter(bool alone) : alone_(alone) {
+    if (alone_ && resetPeakMemory()) memory_before_ = currentMemoryMb();
+    cpu_before_ = cpuMs();
+    start_ = std::chrono::steady_clock::now();
+  }
+  void writeTo(ResultRow& row) const {
+    row.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    if (!alone_) return;
+    row.cpu_ms = cpuMs() - cpu_before_;
+    row.memory_mb = peakMemoryMb() - memory_before_;
+  }
+
+ private:
+  bool alone_;
+  double memory_before_ = kUnknown;
+  double cpu_before_ = 0.0;
+  std::chrono::steady_clock::time_point start_;
+};
+
+class Runner {
+ public:
+  Runner(const std::vector<Method>& methods, const RunOptions& options, std::vector<Task> tasks)
+      : methods_(methods),
+        options_(options),
+        tasks_(std::move(tasks)),
+        outcomes_(tasks_.size()),
+        progress_(static_cast<int>(tasks_.size() * methods.size())) {
+    for (const Method& method : methods_) {
+      settings_.push_back(fingerprint(method.settings + (options_.all_pixels ? "all pixels" : "visible pixels")));
+    }
+    if (!options_.folder.empty()) openTable();
+  }
+
+  RunOutcome run() {
+    std::vector<std::thread> workers;
+    for (int i = 1; i < options_.jobs; ++i) workers.emplace_back([this] { work(); });
+    work();
+    for (std::thread& worker : workers) worker.join();
+    RunOutcome all;
+    for (const RunOutcome& own : outcomes_) {
+      all.rows.insert(all.rows.end(), own.rows.begin(), own.rows.end());
+      all.failures.insert(all.failures.end(), own.failures.begin(), own.failures.end());
+    }
+    if (table_.is_open()) {
+      table_.close();
+      writeCsv(table_path_, all.rows);
+    }
+    return all;
+  }
+
+ private:
+  void openTable() {
+    fs::create_directories(options_.folder);
+    table_path_ = (fs::path(options_.folder) / shardTableName(options_.shard_index, options_.shard_count)).string();
+    if (fs::exists(table_path_)) earlier_ = readCsv(table_path_);
+    writeCsv(table_path_, earlier_);
+    table_.open(table_path_, std::ios::app);
+  }
+
+  void work() {
+    for (std::size_t i = next_++; i < tasks_.size(); i = next_++) {
+      const Task& task = tasks_[i];
+      try {
+        if (!task.problem.empty()) throw std::runtime_error(task.problem);
+        runScene(task.files, outcomes_[i]);
+      } catch (const std::exception& error) {
+        outcomes_[i].failures.push_back({task.files.name, error.what()});
+        progress_.step(task.files.name + " failed", static_cast<int>(methods_.size()));
+      }
+    }
+  }
+
+  void runScene(const SceneFiles& files, RunOutcome& outcome) {
+    const Scene scene = readScene(files);
+    if (!options_.folder.empty()) writeScenePictures(options_.folder, scene);
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      try {
+        outcome.rows.push_back(runMethod(scene, methods_[m], settings_[m]));
+        progress_.step(scene.name + " " + methods_[m].name);
+      } catch (const std::exception& error) {
+        outcome.failures.push_back({scene.name, methods_[m].name + ": " + error.what()});
+        progress_.step(scene.name + " " + methods_[m].name + " failed");
+      }
+    }
+  }
+
+  ResultRow runMethod(const Scene& scene, const Method& method, const std::string& settings) {
+    const auto same = [&](const ResultRow& row) {
+      return row.scene == scene.name && row.method == method.name && row.settings == settings;
+    };
+    const auto earlier = std::find_if(earlier_.begin(), earlier_.end(), same);
+    if (earlier != earlier_.end()) return *earlier;
+    ResultRow row;
+    row.scene = scene.name;
+    row.method = method.name;
+    row.settings = settings;
+    const Meter meter(options_.jobs == 1);
+    const PipelineResult result = method.run(scene);
+    meter.writeTo(row);
+    const cv::Mat mask = options_.all_pixels ? cv::Mat() : scene.mask;
+    row.errors = evaluateDisparity(result.disparity, scene.truth, mask);
+    if (!result.times.empty()) addDiagnostics(result, scene, row);
+    if (!options_.folder.empty()) {
+      writeMethodPictures(options_.folder, scene, method.name, result);
+      keep(row);
+    }
+    return row;
+  }
+
+  static void addDiagnostics(const PipelineResult& result, const Scene& scene, ResultRow& row) {
+    row.seeds = static_cast<double>(result.seeds.size());
+    row.seeds_wrong = wrongSeeds(result.seeds, scene.truth);
+    row.rows_before_px = result.row_alignment.rms_before_px;
+    row.rows_after_px = result.row_alignment.rms_after_px;
+  }
+
+  void keep(const ResultRow& row) {
+    const std::lock_guard<std::mutex> lock(table_mutex_);
+    table_ << csvLine(row) << std::endl;
+    if (!table_) throw std::runtime_error(table_path_ + ": cannot be written");
+  }
+
+  const std::vector<Method>& methods_;
+  const RunOptions options_;
+  const std::vector<Task> tasks_;
+  std::vector<std::string> settings_;
+  std::vector<RunOutcome> outcomes_;  // one per task
+  std::vector<ResultRow> earlier_;
+  Progress progress_;
+  std::atomic<std::size_t> next_{0};
+  std::string table_path_;
+  std::ofstream table_;
+  std::mutex table_mutex_;
+};
+
+}  // namespace
+
+std::string shardTableName(int index, int count) {
+  if (count == 1) return "results.csv";
+  return "results-" + std::to_string(index) + "-of-" + std::to_string(count) + ".csv";
+}
+
+RunOutcome runMethods(const std::vector<std::string>& scene_paths, const std::vector<Method>& methods,
+                      const RunOptions& options) {
+  return Runner(methods, options, collectTasks(scene_paths, options)).run();
+}
+
+}  // namespace fdp_stereo
