@@ -151,12 +151,12 @@ void Pipeline::postProcess(const StereoPair& pair, OptimizerOutput& optimized, P
     checkLeftRight(disparity, optimized.disparity_right, params_.left_right_check);
   }
   filterSpeckles(disparity, params_.speckle_filter);
-  const cv::Mat holes = disparity != disparity;
+  const cv::Mat holes = ~(disparity == disparity);  // OpenCV finds no NaN by != where it compares vectors
   if (params_.hole_filling.enabled) fillHoles(disparity);
   filterWeightedMedian(disparity, pair.left, holes, params_.weighted_median);
   result.disparity = disparity;
   result.confidence = optimized.confidence.clone();
-  result.confidence.setTo(0.0F, disparity != disparity);
+  result.confidence.setTo(0.0F, ~(disparity == disparity));
 }
 
 }  // namespace fdp_stereo
