@@ -12,6 +12,12 @@ namespace fdp_stereo {
 
 enum class MatchingCostType { kRhoCensus, kAdCensus, kCensus, kRho, kBirchfieldTomasi };
 
+/// Costs where x - d is outside the right image.
+enum class CostBorder {
+  kRepeatDisparity,  ///< the pixel's nearest valid cost along d
+  kRepeatPixel,      ///< the cost of the nearest pixel of the row at which d is valid
+};
+
 /// Stage 4: C(p, d) from codes and colours (paper eq. 4-9).
 struct MatchingCostParams {
   MatchingCostType type = MatchingCostType::kRhoCensus;
@@ -24,6 +30,7 @@ struct MatchingCostParams {
   double lambda_census = 30.0;  ///< eq. (9)
   double lambda_ad = 10.0;      ///< eq. (6)
   double rho_weight = 1.0;      ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
+  CostBorder border = CostBorder::kRepeatDisparity;
   int bits = 8;                 ///< of one stored cost: 8 or 16
 };
 
@@ -31,7 +38,7 @@ struct MatchingCostParams {
 double maxMatchingCost(const MatchingCostParams& params);
 
 /// Fills the volume. step = cost of one raw unit; raw costs are rounded and at most round(max / step).
-/// Where x - d leaves the right image the last valid cost along d is repeated.
+/// Where x - d leaves the right image a valid cost is repeated (params.border).
 void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
                          CostVolume& volume);
 

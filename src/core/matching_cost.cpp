@@ -216,8 +216,23 @@ void repeatBorder(T* costs, int x, int width, DisparityRange range, int stride, 
   std::fill(costs + range.count, costs + stride, max_raw);
 }
 
+/// Repeats the cost of the nearest pixel of row y with a valid x - d, at each disparity.
 template <typename T>
-void fillVolume(const CostSource& source, MatchingCostType type, CostVolume& volume) {
+void repeatPixels(int y, CostVolume& volume) {
+  const int last_x = volume.width() - 1;
+  for (int i = 0; i < volume.range().count; ++i) {
+    const int d = volume.range().min + i;
+    for (int x = 0; x < std::min(d, last_x + 1); ++x) {
+      volume.at<T>(y, x)[i] = volume.at<T>(y, std::min(d, last_x))[i];
+    }
+    for (int x = last_x; x > std::max(last_x + d, -1); --x) {
+      volume.at<T>(y, x)[i] = volume.at<T>(y, std::max(last_x + d, 0))[i];
+    }
+  }
+}
+
+template <typename T>
+void fillVolume(const CostSource& source, const MatchingCostParams& params, CostVolume& volume) {
   const int width = volume.width();
 #pragma omp parallel
   {
@@ -226,9 +241,10 @@ void fillVolume(const CostSource& source, MatchingCostType type, CostVolume& vol
     for (int y = 0; y < volume.height(); ++y) {
       loadRow(source, y, width, volume, scratch);
       for (int x = 0; x < width; ++x) {
-        costsOfPixel<T>(source, type, y, x, width, scratch, volume);
+        costsOfPixel<T>(source, params.type, y, x, width, scratch, volume);
         repeatBorder(volume.at<T>(y, x), x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
       }
+      if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
     }
   }
 }
@@ -252,9 +268,9 @@ void computeMatchingCost(const StereoPair& pair, DisparityRange range, const Mat
   volume.create(pair.left.rows, pair.left.cols, range, depth, step, max_raw);
   const CostSource source = makeSource(pair, params, step);
   if (depth == CostVolume::Depth::kU8) {
-    fillVolume<std::uint8_t>(source, params.type, volume);
+    fillVolume<std::uint8_t>(source, params, volume);
   } else {
-    fillVolume<std::uint16_t>(source, params.type, volume);
+    fillVolume<std::uint16_t>(source, params, volume);
   }
 }
 
