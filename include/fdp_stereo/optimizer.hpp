@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fdp_stereo/cost_volume.hpp"
+#include "fdp_stereo/matching_cost.hpp"
 #include "fdp_stereo/types.hpp"
 
 namespace fdp_stereo {
@@ -21,6 +22,9 @@ struct OptimizerInput {
   const StereoPair& pair;  ///< left as given, right aligned
   const Seeds& seeds;
   const std::atomic<bool>* cancel = nullptr;  ///< set from another thread: return the best so far, soon
+  const MatchingCostParams* matching_cost = nullptr;  ///< what the volume was computed with, where it was computed
+  /// Called after every step of a long run, from the calling thread: steps done, steps in all, energy.
+  std::function<void(int, int, double)> progress;
 };
 
 struct OptimizerOutput {

@@ -49,8 +49,10 @@ std::unique_ptr<Optimizer> makeOptimizer(const PipelineParams& params) {
   switch (params.optimizer) {
     case OptimizerType::kWinnerTakesAll: return std::make_unique<WinnerTakesAll>(params.winner_takes_all);
     case OptimizerType::kSemiGlobal: return std::make_unique<SemiGlobal>(params.semi_global);
-    default: throw std::invalid_argument("optimizer.type local_expansion is not available");
+    case OptimizerType::kLocalExpansion:
+      return std::make_unique<LocalExpansion>(params.local_expansion, params.semi_global);
   }
+  throw std::invalid_argument("optimizer.type " + std::to_string(static_cast<int>(params.optimizer)) + ": unknown");
 }
 
 /// The finest cost step with which a path cost of the optimiser still fits the bits of the volume.
@@ -124,7 +126,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("disparity_propagation");
 
   OptimizerOutput& optimized = buffers_->optimized;
-  optimizer_->optimize({volume, pair, result.seeds, cancel}, optimized);
+  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, {}}, optimized);
   result.energies = optimized.energies;
   clock.done("optimizer");
 

@@ -115,6 +115,9 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
   list.add("lambda_ad", p.lambda_ad, 0.1, 1000.0, "", "Scale of the absolute difference in theta (eq. 6).");
   list.add("rho_weight", p.rho_weight, 0.0, 10.0, "",
            "Factor of the rho or AD term beside the census term; 1 in the paper.");
+  list.add("border", p.border, {"repeat_disparity", "repeat_pixel"},
+           "Costs whose match is outside the right image: the pixel's nearest valid one along the disparities, or that "
+           "of the nearest pixel of the row.");
   list.add("bits", p.bits, 8, 16, "", "Bits of one stored cost, 8 or 16; 8 takes half the memory.");
 }
 
@@ -151,8 +154,63 @@ void addOptimizers(ParamList& list, PipelineParams& p) {
   list.add("subpixel", p.semi_global.subpixel, fits, "Curve through the costs around the minimum.");
   list.add("uniqueness_ratio", p.semi_global.uniqueness_ratio, 0.0, 100.0, "%",
            "A pixel stays empty unless its best cost is this much below the next best.", "uniqueness_ratio");
+}
+
+void addProposals(ParamList& list, const std::string& layer, PlaneProposals& p) {
+  list.add(layer + "_expansions", p.expansions, 0, 100, "",
+           "Planes of random pixels of a cell that one visit to a cell of the " + layer + " layer offers.");
+  list.add(layer + "_ransac", p.ransac, 0, 100, "",
+           "Planes fitted to a cell that one visit to a cell of the " + layer + " layer offers.");
+  list.add(layer + "_random", p.random, 0, 100, "",
+           "Perturbed planes that one visit to a cell of the " + layer + " layer offers.");
+}
+
+void addLocalExpansionModel(ParamList& list, LocalExpansionParams& p) {
   list.stage("local_expansion");
-  list.add("lambda", p.local_expansion.lambda, 0.0, 100.0, "cost", "Weight of the smoothness term (eq. 3).");
+  list.add("lambda", p.lambda, 0.0, 100.0, "cost", "Weight of the smoothness term (eq. 3); larger is smoother.");
+  list.add("tau_smooth_px", p.tau_smooth_px, 0.0, 100.0, "px",
+           "Distance between neighbouring planes above which the smoothness term grows no more.");
+  list.add("gamma", p.gamma, 0.1, 1000.0, "", "Colour difference at which the smoothness weight falls to 1/e.");
+  list.add("epsilon", p.epsilon, 0.0, 1.0, "", "Smallest smoothness weight, across the strongest edge.");
+  list.add("data_scale", p.data_scale, 0.001, 1000.0, "", "Factor of the matching cost.");
+  list.add("data_threshold", p.data_threshold, 0.001, 1000.0, "cost",
+           "Truncation of the matching cost after data_scale; smaller forgives occlusions, larger holds weak texture.");
+  list.add("disparity_steps", p.disparity_steps, 1, 16, "1/px",
+           "Costs per pixel of disparity; above 1 they are computed anew on resampled images, for sub-pixel accuracy.");
+  list.add("filter_radius_px", p.filter_radius_px, 0, 50, "px", "Box radius of the guided filter of the data term.");
+  list.add("filter_epsilon", p.filter_epsilon, 1e-6, 1.0, "",
+           "Regularisation of the guided filter; larger smooths over colour edges.");
+  list.add("margin_px", p.margin_px, 0, 50, "px", "A plane is invalid where it leaves the range within this distance.");
+}
+
+void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
+  list.add("initialization", p.initialization, {"random", "semi_global"}, "Where the first planes come from.");
+  list.add("unary_iterations", p.unary_iterations, 0, 100, "", "First rounds that leave out the smoothness term.");
+  list.add("iterations", p.iterations, 0, 100, "", "Rounds of expansion moves; more lower the energy a little further.");
+  list.add("fine_cell", p.fine_cell, 0.1, 100.0, "%", "Side of a cell of the fine layer, in percent of the width.");
+  list.add("middle_cell", p.middle_cell, 0.1, 100.0, "%", "Side of a cell of the middle layer.");
+  list.add("coarse_cell", p.coarse_cell, 0.1, 100.0, "%", "Side of a cell of the coarse layer.");
+  addProposals(list, "fine", p.fine);
+  addProposals(list, "middle", p.middle);
+  addProposals(list, "coarse", p.coarse);
+  list.add("random_first_step", p.random_first_step, 0, 20, "",
+           "Random planes start within range / 2^(1 + this) of the current one; smaller searches wider.");
+  list.add("ransac_threshold_px", p.ransac_threshold_px, 0.01, 100.0, "px", "Distance of an inlier to a fitted plane.");
+  list.add("ransac_samples", p.ransac_samples, 1, 10000, "", "Samples of three points at most.");
+  list.add("stop_gain", p.stop_gain, 0.0, 100.0, "%", "Stop when a round lowers the energy by less; 0 runs all rounds.");
+  list.add("seed", p.seed, 0, 1000000, "", "Seed of the random numbers.");
+  list.add("max_time_ms", p.max_time_ms, 0.0, 1e7, "ms", "Return the best planes found after this time; 0 is no limit.");
+  list.add("warm_start", p.warm_start, "Offer the planes of the previous frame of a sequence.");
+}
+
+void addLocalExpansionRepair(ParamList& list, LocalExpansionParams& p) {
+  list.add("both_views", p.both_views, "Label the right view too, check one against the other and fill by planes.");
+  list.add("max_difference_px", p.max_difference_px, 0.0, 128.0, "px",
+           "Largest difference between the views that counts as consistent.");
+  list.add("median_radius_px", p.median_radius_px, 0, 100, "px",
+           "Radius of the weighted median on filled pixels; 0 is off.");
+  list.add("median_gamma", p.median_gamma, 0.1, 1000.0, "",
+           "Colour difference at which a weight of that median falls to 1/e.");
 }
 
 void addPostProcessing(ParamList& list, PipelineParams& p) {
@@ -355,6 +413,9 @@ std::vector<ParamRef> paramList(PipelineParams& params) {
   addMatchingCost(list, params.matching_cost);
   addSeeds(list, params.sparse_disparity, params.disparity_propagation);
   addOptimizers(list, params);
+  addLocalExpansionModel(list, params.local_expansion);
+  addLocalExpansionSearch(list, params.local_expansion);
+  addLocalExpansionRepair(list, params.local_expansion);
   addPostProcessing(list, params);
   return list.take();
 }
