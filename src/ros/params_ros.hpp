@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <XmlRpcValue.h>
+#include <dynamic_reconfigure/Config.h>
+
+#include "fdp_stereo/pipeline_params.hpp"
+
+/// dynamic_reconfigure and the parameter server to and from the one list of parameters; no node needed.
+namespace fdp_stereo {
+
+/// What only the node needs, beside the pipeline's parameters.
+struct NodeParams {
+  double max_rate_hz = 0.0;  ///< pairs per second by their stamps; 0 = every pair
+  double max_age_s = 0.0;    ///< an older pair is dropped; 0 = off, as bags need it
+  int nice = 0;              ///< of the working threads, 0..19
+  double min_depth_m = 0.0;
+  double max_depth_m = 0.0;  ///< 0 = none
+};
+
+/// One consistent set: a frame is processed with one of them, whole.
+struct NodeSettings {
+  PipelineParams pipeline;
+  NodeParams node;
+  unsigned revision = 0;  ///< counts the edits
+};
+
+/// The preset of a node that is told nothing.
+constexpr char kDefaultPreset[] = "fast";
+
+/// Every parameter that can be edited live: the node's, then paramList(). The references live as long as `settings`.
+std::vector<ParamRef> liveParamList(NodeSettings& settings);
+
+/// Throws std::invalid_argument as validate() of the pipeline does.
+void validate(const NodeSettings& settings);
+
+/// Overwrites the values in `config` (bools, ints, doubles by their ROS name; a choice is the index of its name).
+void toConfig(const NodeSettings& settings, dynamic_reconfigure::Config& config);
+
+/// `current` with the values of `edits`; values outside their range are clamped; values that do not go together are
+/// left as they were. Each correction adds a line to `messages`. The revision grows where a value changed.
+NodeSettings applyConfig(const dynamic_reconfigure::Config& edits, const NodeSettings& current,
+                         std::vector<std::string>& messages);
+
+/// The same from a private namespace of the parameter server: flat ROS names, or the maps of a YAML preset
+/// (stage: {name: value}); choices by name or index. Names in `others` are not ours to judge.
+NodeSettings applyRosparam(const XmlRpc::XmlRpcValue& values, const NodeSettings& current,
+                           const std::vector<std::string>& others, std::vector<std::string>& messages);
+
+/// cfg/Disparity.cfg as the list of parameters and the default preset define it.
+std::string reconfigureFile();
+
+}  // namespace fdp_stereo
