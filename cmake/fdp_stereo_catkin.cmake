@@ -3,6 +3,7 @@
 find_package(catkin REQUIRED COMPONENTS
   cv_bridge diagnostic_updater dynamic_reconfigure image_transport message_filters nodelet rosbag roscpp sensor_msgs
   stereo_msgs tf2_ros)
+generate_dynamic_reconfigure_options(cfg/Disparity.cfg)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES fdp_stereo_core

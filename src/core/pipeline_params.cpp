@@ -62,8 +62,9 @@ void addPipeline(ParamList& list, PipelineParams& p) {
   list.add("num_disparities", p.search.count, 1, 1024, "px",
            "Number of disparities searched; more sees nearer things and costs time and memory.", "disparity_range");
   list.stage("pipeline");
-  list.add("threads", p.threads, 0, 64, "", "Threads of one pair; 0 uses every core.");
-  list.add("max_memory_mb", p.max_memory_mb, 16, 65536, "MB", "A pair that would need more memory is refused.");
+  list.add("threads", p.threads, 0, 64, "", "Threads of one pair; 0 uses every core.", "threads");
+  list.add("max_memory_mb", p.max_memory_mb, 16, 65536, "MB", "A pair that would need more memory is refused.",
+           "max_memory_mb");
 }
 
 void addFeatureMatching(ParamList& list, FeatureMatchingParams& p) {

@@ -209,10 +209,11 @@ void setEntry(Entries& entries, const std::string& name, Value value) {
   entries.back().value = value;
 }
 
+/// dynamic_reconfigure allows no straight quotes or backslashes in texts.
 std::string quoted(const std::string& text) {
-  std::string escaped = "\"";
-  for (const char c : text) escaped += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
-  return escaped + "\"";
+  std::string safe;
+  for (const char c : text) safe += (c == '"' || c == '\'' || c == '\\') ? std::string("\u2019") : std::string(1, c);
+  return "\"" + safe + "\"";
 }
 
 std::string pythonNumber(const ParamRef& ref, double value) {

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <stereo_msgs/DisparityImage.h>
+
+#include "conversions.hpp"
+#include "fdp_stereo/pipeline.hpp"
+#include "frame_worker.hpp"
+#include "params_ros.hpp"
+
+namespace fdp_stereo {
+
+/// Outputs that somebody listens to.
+struct WantedOutputs {
+  bool disparity = false;
+  bool depth = false;
+  bool confidence = false;
+};
+
+/// What is told about one pair.
+struct FrameReport {
+  std::vector<std::string> warnings;
+  std::vector<StageTime> times;
+  std::size_t seeds = 0;
+  std::size_t rejected_seeds = 0;
+  double row_offset_px = 0.0;  ///< RMS over the image
+  double valid_share = 0.0;    ///< of the pixels
+};
+
+/// Messages of one pair, null where not wanted.
+struct FrameOutput {
+  stereo_msgs::DisparityImagePtr disparity;
+  sensor_msgs::ImagePtr depth;
+  sensor_msgs::CameraInfoPtr depth_info;
+  sensor_msgs::ImagePtr confidence;
+  FrameReport report;
+};
+
+/// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
+class FrameProcessor {
+ public:
+  explicit FrameProcessor(StereoTopics topics) : topics_(std::move(topics)) {}
+
+  /// Throws std::invalid_argument naming the topic, the value and the remedy where no disparity can come out. The
+  /// outputs stay null where `cancel` was set meanwhile.
+  FrameOutput process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
+                      const std::atomic<bool>* cancel = nullptr);
+  /// Forgets what was learnt from earlier frames: the stamps jumped back.
+  void reset();
+
+ private:
+  StereoPair decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
+  Pipeline& pipelineFor(const NodeSettings& settings);
+
+  StereoTopics topics_;
+  std::unique_ptr<Pipeline> pipeline_;
+  unsigned revision_ = 0;
+};
+
+}  // namespace fdp_stereo

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "node_status.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace fdp_stereo {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+std::string counts(const NodeStatus& now, const NodeStatus& before) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < now.inputs.size(); ++i) {
+    text << (i == 0 ? "" : ", ") << now.inputs[i].topic << " " << now.inputs[i].received - before.inputs[i].received;
+  }
+  return text.str();
+}
+
+/// Topics that brought nothing since `before`.
+std::string missingTopics(const NodeStatus& now, const NodeStatus& before) {
+  std::string text;
+  for (std::size_t i = 0; i < now.inputs.size(); ++i) {
+    const InputStatus& input = now.inputs[i];
+    if (input.received != before.inputs[i].received) continue;
+    text += (text.empty() ? "" : "; ") + input.topic +
+            (input.publishers == 0 ? " has no publisher (check the name with rostopic list)"
+                                   : " has a publisher that sends nothing (check with rostopic hz)");
+  }
+  return text;
+}
+
+/// All topics arrive, so their stamps do not meet.
+std::string stampCause(const NodeStatus& status) {
+  const auto [first, last] =
+      std::minmax_element(status.inputs.begin(), status.inputs.end(),
+                          [](const InputStatus& a, const InputStatus& b) { return a.stamp < b.stamp; });
+  std::ostringstream text;
+  text.precision(4);
+  text << "the newest stamps of " << first->topic << " and " << last->topic << " are apart by "
+       << (last->stamp - first->stamp).toSec() * 1e3 << " ms; ";
+  if (status.approximate_sync) {
+    text << "raise ~queue_size or ~approximate_sync_tolerance, or synchronise the cameras";
+  } else {
+    text << "the cameras must be triggered together and camera_info carry the image's stamp, or set ~approximate_sync";
+  }
+  return text.str();
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
+}
+
+double rate(std::uint64_t now, std::uint64_t before, double seconds) {
+  return seconds > 0.0 ? static_cast<double>(now - before) / seconds : 0.0;
+}
+
+void summarize(const NodeStatus& status, diagnostic_updater::DiagnosticStatusWrapper& diagnostics) {
+  if (status.master_lost) {
+    diagnostics.summary(DiagnosticStatus::ERROR, "The ROS master does not answer");
+  } else if (!status.subscribed) {
+    diagnostics.summary(DiagnosticStatus::OK, "Idle: no output has a subscriber");
+  } else if (status.error_is_current) {
+    diagnostics.summary(DiagnosticStatus::ERROR, status.last_error);
+  } else if (status.pairs == 0) {
+    diagnostics.summary(DiagnosticStatus::WARN, "No synchronised pair yet");
+  } else if (!status.frame.warnings.empty()) {
+    diagnostics.summary(DiagnosticStatus::WARN, joined(status.frame.warnings));
+  } else {
+    diagnostics.summary(DiagnosticStatus::OK, "Running");
+  }
+}
+
+}  // namespace
+
+std::string describeSilence(const NodeStatus& now, const NodeStatus& before, double seconds) {
+  if (!now.subscribed || !before.subscribed || now.processed != before.processed) return "";
+  std::ostringstream text;
+  if (now.pairs != before.pairs) {
+    if (now.failed == before.failed) return "";
+    text << now.pairs - before.pairs << " pairs in the last " << std::lround(seconds)
+         << " s, none could be used: " << now.last_error;
+    return text.str();
+  }
+  const std::string missing = missingTopics(now, before);
+  text << "no synchronised pair in the last " << std::lround(seconds) << " s. Messages: " << counts(now, before)
+       << ". Likely cause: " << (missing.empty() ? stampCause(now) : missing);
+  return text.str();
+}
+
+void describeStatus(const NodeStatus& now, const NodeStatus& before, double seconds,
+                    diagnostic_updater::DiagnosticStatusWrapper& diagnostics) {
+  summarize(now, diagnostics);
+  for (std::size_t i = 0; i < now.inputs.size(); ++i) {
+    const InputStatus& input = now.inputs[i];
+    diagnostics.addf(input.topic, "%llu received, %.1f Hz", static_cast<unsigned long long>(input.received),
+                     rate(input.received, before.inputs[i].received, seconds));
+  }
+  diagnostics.add("Pairs synchronised", now.pairs);
+  diagnostics.add("Pairs processed", now.processed);
+  diagnostics.addf("Output rate (Hz)", "%.2f", rate(now.processed, before.processed, seconds));
+  diagnostics.add("Pairs failed", now.failed);
+  diagnostics.add("Pairs dropped (overload)", now.dropped);
+  diagnostics.add("Pairs dropped (max_rate)", now.over_rate);
+  diagnostics.add("Pairs dropped (max_age)", now.too_old);
+  diagnostics.add("Pairs waiting", now.waiting);
+  diagnostics.addf("Processing (ms)", "%.1f", now.processing_ms);
+  diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
+  diagnostics.addf("Age of the output (ms)", "%.1f", now.age_ms);
+  for (const StageTime& time : now.frame.times) diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
+  diagnostics.add("Seeds", now.frame.seeds);
+  diagnostics.add("Seeds rejected", now.frame.rejected_seeds);
+  diagnostics.addf("Row offset (px)", "%.2f", now.frame.row_offset_px);
+  diagnostics.addf("Valid pixels (%)", "%.1f", 100.0 * now.frame.valid_share);
+  diagnostics.add("Parameter revision", now.revision);
+  diagnostics.add("Warnings", joined(now.frame.warnings));
+  diagnostics.add("Last error", now.last_error);
+}
+
+bool LogThrottle::allow(const std::string& text, Clock::time_point now) {
+  const auto old = [&](const Line& line) { return now - line.time >= period_; };
+  recent_.erase(std::remove_if(recent_.begin(), recent_.end(), old), recent_.end());
+  const auto same = [&](const Line& line) { return line.text == text; };
+  if (recent_.size() >= max_lines_ || std::any_of(recent_.begin(), recent_.end(), same)) return false;
+  recent_.push_back({text, now});
+  return true;
+}
+
+}  // namespace fdp_stereo
