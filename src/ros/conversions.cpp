@@ -135,6 +135,17 @@ cv::Mat wrapOrCopy(const sensor_msgs::Image& message, int type) {
   return copy;
 }
 
+std::string encodingOf(int type) {
+  switch (type) {
+    case CV_8UC1: return enc::MONO8;
+    case CV_8UC3: return enc::BGR8;
+    case CV_16UC1: return enc::MONO16;
+    case CV_16UC3: return enc::BGR16;
+    case CV_32FC1: return enc::TYPE_32FC1;
+    default: fail("an image of OpenCV type ", type, " cannot be published; 8 or 16 bit, grey or BGR, or 32FC1 can");
+  }
+}
+
 /// P of one camera in px of the image as published: camera_info speaks of the full sensor.
 struct Projection {
   double fx, fy, cx, cy, tx;
@@ -307,13 +318,12 @@ sensor_msgs::ImagePtr toDepthMessage(const cv::Mat& disparity, const std_msgs::H
 }
 
 sensor_msgs::ImagePtr toImageMessage(const cv::Mat& image, const std_msgs::Header& header) {
-  if (image.type() != CV_32FC1 && image.type() != CV_8UC3) fail("image of type ", image.type(), " is not published");
   auto message = boost::make_shared<sensor_msgs::Image>();
   const std::size_t row_bytes = image.elemSize() * static_cast<std::size_t>(image.cols);
   message->header = header;
   message->height = static_cast<std::uint32_t>(image.rows);
   message->width = static_cast<std::uint32_t>(image.cols);
-  message->encoding = image.type() == CV_32FC1 ? enc::TYPE_32FC1 : enc::BGR8;
+  message->encoding = encodingOf(image.type());
   message->is_bigendian = hostIsBigEndian() ? 1 : 0;
   message->step = static_cast<std::uint32_t>(row_bytes);
   message->data.resize(row_bytes * static_cast<std::size_t>(image.rows));

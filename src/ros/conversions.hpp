@@ -62,7 +62,7 @@ struct DepthLimits {
 sensor_msgs::ImagePtr toDepthMessage(const cv::Mat& disparity, const std_msgs::Header& header,
                                      const StereoGeometry& geometry, DepthLimits limits);
 
-/// A CV_32FC1 map as 32FC1, or CV_8UC3 as bgr8.
+/// Grey or BGR of 8 or 16 bit, or a CV_32FC1 map, copied into a message. Throws std::invalid_argument for other types.
 sensor_msgs::ImagePtr toImageMessage(const cv::Mat& image, const std_msgs::Header& header);
 
 }  // namespace fdp_stereo
