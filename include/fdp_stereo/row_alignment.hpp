@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -10,7 +11,9 @@
 
 namespace fdp_stereo {
 
+/// kPerFrame: each pair by itself. kAccumulate: the matches of recent frames count too, the older the less.
 enum class RowAlignmentMode { kPerFrame, kAccumulate };
+/// kAuto: the smallest order that matches held out of the fit support; the others: that order or the identity.
 enum class RowAlignmentModel { kAuto, kConstant, kAffine, kQuadratic };
 
 /// Stage 2: vertical offset between the views from the row residuals of the matches, and its repair.
@@ -18,46 +21,67 @@ struct RowAlignmentParams {
   bool enabled = true;
   RowAlignmentMode mode = RowAlignmentMode::kPerFrame;
   RowAlignmentModel model = RowAlignmentModel::kAuto;
-  double warn_px = 0.3;  ///< a larger RMS offset is reported as a calibration that is off
+  double max_bend_px = 0.8;  ///< second-order part beyond which only a constant is repaired: columns are off as well then
+  double forgetting = 0.8;   ///< kAccumulate: weight of a match falls to this share per frame, 0..1
+  double warn_px = 0.3;      ///< a larger RMS offset is reported as a calibration that is off
 };
 
-/// dv(x, y) = v_p - v_q as a polynomial in left-image coordinates; all zero = identity.
+/// dv = v_p - v_q as a polynomial over the aligned right image: x its column, y its row (that of the left image).
 struct RowOffsetModel {
   /// 1, x, y, x^2, xy, y^2 with x, y in [-1, 1] over the image.
   Eigen::Matrix<double, 6, 1> coefficients = Eigen::Matrix<double, 6, 1>::Zero();
   int order = -1;  ///< -1 identity, 0 constant, 1 affine, 2 quadratic
   cv::Size size;
   bool identity() const { return order < 0; }
+  /// px; x, y in px of the aligned right image.
   double offsetAt(double x, double y) const;
 };
 
 /// What the stage did to one pair.
 struct RowAlignment {
   RowOffsetModel model;
-  int matches_used = 0;
-  double rms_before_px = 0.0;   ///< robust RMS of the row residuals as given
+  int matches_used = 0;         ///< whose residual about the model is below three times its scatter
+  double rms_before_px = 0.0;   ///< of the row residuals of these matches as given
   double rms_after_px = 0.0;    ///< and about the model
   double sigma_px = 0.0;        ///< uncertainty of the model, RMS over the image
   double offset_rms_px = 0.0;   ///< RMS of the model over the image: how far the calibration is off
-  std::string note;             ///< why the identity was kept, or the model chosen
+  std::string note;             ///< the model chosen, or why the identity was kept
+  std::string warning;          ///< what is wrong with the calibration and what to do; empty where nothing is
 };
 
 /// The model that the matches support; the identity when in doubt. Never throws on degenerate matches.
+///
+/// Fits by iteratively reweighted least squares (Cauchy weight, scale 0.15 px). An order is taken only if matches held
+/// out of the fit (five spatial folds) support it significantly, and if there are enough of them, spread over the image.
 RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
 
 /// The right image resampled so that its rows meet the left's. Returns the image itself for the identity.
-/// 8U or 16U, 1 or 3 channels.
+/// 8U or 16U, 1 or 3 channels, of the model's size; std::invalid_argument otherwise. Borders are replicated.
 cv::Mat alignRows(const cv::Mat& right, const RowOffsetModel& model);
 
-/// The same estimate over a stream: forgets slowly, starts anew when the evidence jumps.
+/// The matches as they are between the left image and the aligned right one.
+FeatureMatches alignMatches(const FeatureMatches& matches, const RowOffsetModel& model);
+
+/// The offset field in colour (blue: right image too low, red: too high; full colour at 1 px or the largest offset), with
+/// the residual of each match about it as an arrow, 50 times enlarged, on the dimmed left image. CV_8UC3.
+cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, const RowAlignment& alignment);
+
+/// The same estimate over a stream: forgets slowly, starts anew when the evidence jumps. The same sequence of matches
+/// gives the same result.
 class RowAlignmentAccumulator {
  public:
+  /// Takes the matches of the next frame (as given, not aligned). kPerFrame: looks at this frame alone.
   RowAlignment update(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
   void reset();
 
  private:
-  // Filled by the stage's implementation.
-  FeatureMatches history_;
+  struct Aged {
+    FeatureMatch match;
+    double weight = 1.0;
+  };
+  bool contradicts(const FeatureMatches& matches) const;
+  std::vector<Aged> history_;
+  RowOffsetModel last_;
 };
 
 }  // namespace fdp_stereo

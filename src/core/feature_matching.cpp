@@ -22,8 +22,10 @@ constexpr float kMinCorrelation = 0.8F;
 /// OpenCV's pyramids fail on smaller images.
 constexpr int kMinSidePx = 32;
 
-cv::Mat toGrey(const cv::Mat& image) {
+/// Takes the grey image that there is, if it has 8 bits.
+cv::Mat toGrey(const cv::Mat& image, const cv::Mat& known) {
   if (image.type() == CV_8UC1) return image;
+  if (known.type() == CV_8UC1 && known.size() == image.size()) return known;
   cv::Mat grey;
   cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   return grey;
@@ -137,8 +139,8 @@ FeatureMatching matchFeatures(const StereoPair& pair, DisparityRange range, cons
     result.detector = FeatureDetector::kOrb;
     result.note = "this build of OpenCV has no SIFT: matched with ORB";
   }
-  const cv::Mat left = toGrey(pair.left);
-  const cv::Mat right = toGrey(pair.right);
+  const cv::Mat left = toGrey(pair.left, pair.left_grey);
+  const cv::Mat right = toGrey(pair.right, pair.right_grey);
   if (result.detector == FeatureDetector::kFastCensus) {
     for (const CornerMatch& m : matchCorners(left, right, range, params)) {
       result.matches.push_back({cv::Point2f(m.left), cv::Point2f(m.right), 1.0F - m.ratio});

@@ -114,8 +114,8 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   computeMatchingCost(pair, params_.search, params_.matching_cost, costStep(params_, *optimizer_), volume);
   clock.done("matching_cost");
 
-  SparseDisparity sparse =
-      buildSparseDisparity(result.matches, external, pair, params_.search, params_.sparse_disparity);
+  const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
+  SparseDisparity sparse = buildSparseDisparity(aligned, external, pair, params_.search, params_.sparse_disparity);
   result.seeds = std::move(sparse.seeds);
   result.rejected_seeds = std::move(sparse.rejected);
   clock.done("sparse_disparity");
@@ -138,9 +138,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
 RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
   if (!params_.row_alignment.enabled) return {};
   const cv::Size size = pair.left.size();
-  RowAlignment alignment = params_.row_alignment.mode == RowAlignmentMode::kAccumulate
-                               ? row_alignment_.update(matches, size, params_.row_alignment)
-                               : estimateRowAlignment(matches, size, params_.row_alignment);
+  RowAlignment alignment = row_alignment_.update(matches, size, params_.row_alignment);
   const bool shared = pair.right.data == pair.right_grey.data;
   pair.right = alignRows(pair.right, alignment.model);
   pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);
