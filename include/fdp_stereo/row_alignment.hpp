@@ -14,23 +14,26 @@ namespace fdp_stereo {
 /// kPerFrame: each pair by itself. kAccumulate: the matches of recent frames count too, the older the less.
 enum class RowAlignmentMode { kPerFrame, kAccumulate };
 /// kAuto: the smallest order that matches held out of the fit support; the others: that order or the identity.
-enum class RowAlignmentModel { kAuto, kConstant, kAffine, kQuadratic };
+/// kRadial adds what remains of a lens' radial distortion to the quadratic.
+enum class RowAlignmentModel { kAuto, kConstant, kAffine, kQuadratic, kRadial };
 
 /// Stage 2: vertical offset between the views from the row residuals of the matches, and its repair.
 struct RowAlignmentParams {
   bool enabled = true;
   RowAlignmentMode mode = RowAlignmentMode::kPerFrame;
   RowAlignmentModel model = RowAlignmentModel::kAuto;
-  double max_bend_px = 0.8;  ///< second-order part beyond which only a constant is repaired: columns are off as well then
-  double forgetting = 0.8;   ///< kAccumulate: weight of a match falls to this share per frame, 0..1
-  double warn_px = 0.3;      ///< a larger RMS offset is reported as a calibration that is off
+  double forgetting = 0.8;  ///< kAccumulate: weight of a match falls to this share per frame, 0..1
+  double warn_px = 0.3;     ///< a larger RMS offset is reported as a calibration that is off
 };
+
+constexpr int kRowOffsetTerms = 7;
 
 /// dv = v_p - v_q as a polynomial over the aligned right image: x its column, y its row (that of the left image).
 struct RowOffsetModel {
-  /// 1, x, y, x^2, xy, y^2 with x, y in [-1, 1] over the image.
-  Eigen::Matrix<double, 6, 1> coefficients = Eigen::Matrix<double, 6, 1>::Zero();
-  int order = -1;  ///< -1 identity, 0 constant, 1 affine, 2 quadratic
+  using Coefficients = Eigen::Matrix<double, kRowOffsetTerms, 1>;
+  /// 1, x, y, x^2, xy, y^2, y (x^2 + (height / width)^2 y^2) with x, y in [-1, 1] over the image.
+  Coefficients coefficients = Coefficients::Zero();
+  int order = -1;  ///< -1 identity, 0 constant, 1 affine, 2 quadratic, 3 quadratic and radial
   cv::Size size;
   bool identity() const { return order < 0; }
   /// px; x, y in px of the aligned right image.
@@ -51,7 +54,7 @@ struct RowAlignment {
 
 /// The model that the matches support; the identity when in doubt. Never throws on degenerate matches.
 ///
-/// Fits by iteratively reweighted least squares (Cauchy weight, scale 0.15 px). An order is taken only if matches held
+/// Fits by iteratively reweighted least squares (Geman-McClure weight, from a wide scale down to 0.35 px). An order is taken only if matches held
 /// out of the fit (five spatial folds) support it significantly, and if there are enough of them, spread over the image.
 RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
 
@@ -62,9 +65,11 @@ cv::Mat alignRows(const cv::Mat& right, const RowOffsetModel& model);
 /// The matches as they are between the left image and the aligned right one.
 FeatureMatches alignMatches(const FeatureMatches& matches, const RowOffsetModel& model);
 
-/// The offset field in colour (blue: right image too low, red: too high; full colour at 1 px or the largest offset), with
-/// the residual of each match about it as an arrow, 50 times enlarged, on the dimmed left image. CV_8UC3.
-cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, const RowAlignment& alignment);
+/// The offset field as colour over the dimmed left image (red: the right view lies too high by up to full_scale_px, blue:
+/// too low) and for each match an arrow of its row residual about the model, 40 times enlarged. CV_8UC3.
+/// left: 8U or 16U, 1 or 3 channels.
+cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, const RowAlignment& alignment,
+                         double full_scale_px = 1.0);
 
 /// The same estimate over a stream: forgets slowly, starts anew when the evidence jumps. The same sequence of matches
 /// gives the same result.

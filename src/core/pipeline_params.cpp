@@ -88,10 +88,8 @@ void addRowAlignment(ParamList& list, RowAlignmentParams& p) {
   list.add("enabled", p.enabled, "Repair imperfect rectification by resampling the rows of the right image.");
   list.add("mode", p.mode, {"per_frame", "accumulate"},
            "Estimate the row offset from each pair alone, or gather the evidence over a stream.");
-  list.add("model", p.model, {"auto", "constant", "affine", "quadratic"},
+  list.add("model", p.model, {"auto", "constant", "affine", "quadratic", "radial"},
            "Shape of the row offset over the image; auto takes what the matches support.");
-  list.add("max_bend_px", p.max_bend_px, 0.0, 10.0, "px",
-           "Where the second-order part of the offset is larger, only a constant offset is repaired.");
   list.add("forgetting", p.forgetting, 0.0, 1.0, "",
            "With mode accumulate: share of its weight that a match keeps from frame to frame.");
   list.add("warn_px", p.warn_px, 0.0, 10.0, "px", "A larger RMS row offset is reported as a calibration that is off.");

@@ -15,32 +15,39 @@
 namespace fdp_stereo {
 namespace {
 
-using Basis = Eigen::Matrix<double, 6, 1>;
+using Basis = RowOffsetModel::Coefficients;
+using BasisMatrix = Eigen::Matrix<double, kRowOffsetTerms, kRowOffsetTerms>;
 
-constexpr double kCauchyScalePx = 0.15;
+/// Residual at which a match counts a quarter; matches scatter by 0.1 to 0.2 px.
+constexpr double kScalePx = 0.35;
 constexpr int kFolds = 5;
 constexpr int kFoldCells = 12;  // matches of one of 12 x 12 cells share a fold: neighbours share their errors
 /// Terms, matches needed and largest uncertainty (px, RMS over the image) of each order.
-constexpr std::array<int, 3> kTerms = {1, 3, 6};
-constexpr std::array<int, 3> kMinMatches = {12, 30, 60};
+constexpr std::array<int, 4> kTerms = {1, 3, 6, 7};
+constexpr std::array<int, 4> kMinMatches = {12, 30, 60, 80};
 constexpr double kMaxSigmaPx = 0.1;
 /// Held-out loss must fall by this many standard errors, and by this share, for an order to be taken.
 constexpr double kMinStandardErrors = 2.0;
 constexpr double kMinGain = 0.02;
 /// Standard deviation of the positions, in units of half the image, below which nothing is known of the rest of it.
 constexpr double kMinSpread = 0.1;
+/// Share of the matches that must lie within kScalePx of the model: matches that are all wrong agree on nothing.
+constexpr double kMinShare = 0.3;
 /// A model that moves the rows by less (RMS) is not worth the resampling.
 constexpr double kMinOffsetPx = 0.04;
 
 /// Of a stream: rise of the mean loss that tells that the cameras moved, and weight below which a match is dropped.
-constexpr double kJump = 0.5;
-constexpr double kForgotten = 0.2;
+constexpr double kJump = 0.25;
+constexpr double kForgotten = 0.1;
+/// Matches remembered at most: beyond these more of them cost time and tell nothing new.
+constexpr std::size_t kMaxHistory = 800;
 
 Basis basisAt(double x, double y, cv::Size size) {
   const double u = 2.0 * x / std::max(1, size.width - 1) - 1.0;
   const double v = 2.0 * y / std::max(1, size.height - 1) - 1.0;
   Basis b;
-  b << 1.0, u, v, u * u, u * v, v * v;
+  const double aspect = static_cast<double>(size.height) / std::max(1, size.width);
+  b << 1.0, u, v, u * u, u * v, v * v, v * (u * u + aspect * aspect * v * v);
   return b;
 }
 
@@ -52,7 +59,8 @@ struct Sample {
   int fold = 0;
 };
 
-double loss(double residual) { return std::log1p(residual * residual / (kCauchyScalePx * kCauchyScalePx)); }
+/// Geman and McClure: 0 to 1, and all that is far off costs the same.
+double loss(double residual) { return residual * residual / (residual * residual + kScalePx * kScalePx); }
 
 Sample makeSample(const FeatureMatch& match, double weight, cv::Size size) {
   Sample sample;
@@ -67,7 +75,7 @@ Sample makeSample(const FeatureMatch& match, double weight, cv::Size size) {
 
 struct Fit {
   Basis coefficients = Basis::Zero();
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  BasisMatrix covariance = BasisMatrix::Zero();
   bool ok = false;
 };
 
@@ -80,14 +88,15 @@ double medianOffset(const std::vector<Sample>& samples) {
 
 /// One reweighted step on the samples outside `left_out`; false where they do not determine the terms.
 bool reweightedStep(const std::vector<Sample>& samples, int terms, int left_out, double scale, Fit& fit) {
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  BasisMatrix normal = BasisMatrix::Zero();
   Basis right_side = Basis::Zero();
   double squares = 0.0;
   double weights = 0.0;
   for (const Sample& s : samples) {
     if (s.fold == left_out) continue;
     const double residual = s.dv - s.basis.dot(fit.coefficients);
-    const double weight = s.weight / (1.0 + residual * residual / (scale * scale));
+    const double root = 1.0 + residual * residual / (scale * scale);
+    const double weight = s.weight / (root * root);
     normal.noalias() += weight * s.basis * s.basis.transpose();
     right_side += weight * s.dv * s.basis;
     squares += weight * residual * residual;
@@ -108,11 +117,11 @@ bool reweightedStep(const std::vector<Sample>& samples, int terms, int left_out,
 Fit fitOrder(const std::vector<Sample>& samples, int order) {
   Fit fit;
   fit.coefficients(0) = medianOffset(samples);
-  for (double scale = 1.2; scale > kCauchyScalePx; scale *= 0.7) {
+  for (double scale = 2.4; scale > kScalePx; scale *= 0.7) {
     if (!reweightedStep(samples, kTerms[order], -1, scale, fit)) return fit;
   }
   for (int i = 0; i < 10; ++i) {
-    if (!reweightedStep(samples, kTerms[order], -1, kCauchyScalePx, fit)) return fit;
+    if (!reweightedStep(samples, kTerms[order], -1, kScalePx, fit)) return fit;
   }
   fit.ok = true;
   return fit;
@@ -124,7 +133,7 @@ std::vector<double> heldOutLosses(const std::vector<Sample>& samples, int order,
   for (int fold = 0; fold < kFolds; ++fold) {
     Fit fit = full;
     for (int i = 0; i < 4; ++i) {
-      if (!reweightedStep(samples, kTerms[order], fold, kCauchyScalePx, fit)) break;
+      if (!reweightedStep(samples, kTerms[order], fold, kScalePx, fit)) break;
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples[i].fold == fold) losses[i] = loss(samples[i].dv - samples[i].basis.dot(fit.coefficients));
@@ -154,7 +163,7 @@ bool clearlyBetter(const std::vector<Sample>& samples, const std::vector<double>
 }
 
 /// RMS over the image of sqrt(b' M b): of the model (M = c c') or of its uncertainty (M = covariance).
-double rmsOverImage(const Eigen::Matrix<double, 6, 6>& matrix, cv::Size size) {
+double rmsOverImage(const BasisMatrix& matrix, cv::Size size) {
   constexpr int kSteps = 9;
   double sum = 0.0;
   for (int j = 0; j < kSteps; ++j) {
@@ -180,14 +189,15 @@ bool spreadOut(const std::vector<Sample>& samples) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()(0) > kMinSpread * kMinSpread;
 }
 
-/// Largest value of the second-order part over the image.
-double bend(const Basis& c) { return std::abs(c(3)) + std::abs(c(4)) + std::abs(c(5)); }
+double shareWithinScale(const std::vector<Sample>& samples, const Fit& fit) {
+  const auto near = [&](const Sample& s) { return std::abs(s.dv - s.basis.dot(fit.coefficients)) < kScalePx; };
+  return static_cast<double>(std::count_if(samples.begin(), samples.end(), near)) / static_cast<double>(samples.size());
+}
 
 struct Choice {
   int order = -1;
   Fit fit;
   double offset_rms_px = 0.0;
-  double bend_px = 0.0;  // of a supported quadratic that was refused
 };
 
 /// Climbs the orders as long as the held-out matches gain by it.
@@ -195,24 +205,18 @@ Choice chooseOrder(const std::vector<Sample>& samples, cv::Size size, const RowA
   Choice choice;
   std::vector<double> best;
   for (const Sample& s : samples) best.push_back(loss(s.dv));
-  Choice constant;
   const bool automatic = params.model == RowAlignmentModel::kAuto;
-  for (int order = 0; order < 3; ++order) {
+  for (int order = 0; order < static_cast<int>(kTerms.size()); ++order) {
     if (!automatic && order != static_cast<int>(params.model) - 1) continue;
     if (static_cast<int>(samples.size()) < kMinMatches[order]) break;
     const Fit fit = fitOrder(samples, order);
-    if (!fit.ok || rmsOverImage(fit.covariance, size) > kMaxSigmaPx) continue;
+    if (!fit.ok || rmsOverImage(fit.covariance, size) > kMaxSigmaPx || shareWithinScale(samples, fit) < kMinShare) continue;
     const std::vector<double> losses = heldOutLosses(samples, order, fit);
     if (!clearlyBetter(samples, losses, best)) continue;
-    if (order == 2 && bend(fit.coefficients) > params.max_bend_px) {
-      constant.bend_px = bend(fit.coefficients);
-      return constant;
-    }
     choice.order = order;
     choice.fit = fit;
     choice.offset_rms_px = rmsOverImage(fit.coefficients * fit.coefficients.transpose(), size);
     best = losses;
-    if (order == 0) constant = choice;
   }
   return choice;
 }
@@ -229,7 +233,7 @@ void measure(const std::vector<Sample>& samples, RowAlignment& result) {
   for (const Sample& s : samples) residuals.push_back(std::abs(s.dv - s.basis.dot(result.model.coefficients)));
   std::vector<double> sorted = residuals;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double limit = 3.0 * std::max(1.4826 * sorted[sorted.size() / 2], 0.5 * kCauchyScalePx);
+  const double limit = 3.0 * std::max(1.4826 * sorted[sorted.size() / 2], 0.2 * kScalePx);
   double before = 0.0;
   double after = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -244,7 +248,7 @@ void measure(const std::vector<Sample>& samples, RowAlignment& result) {
 
 /// The note and the warning of a choice.
 void describe(const RowAlignmentParams& params, const Choice& choice, RowAlignment& result) {
-  static const std::array<const char*, 3> kNames = {"constant", "affine", "quadratic"};
+  static const std::array<const char*, 4> kNames = {"constant", "affine", "quadratic", "radial"};
   if (!result.model.identity()) {
     result.note = kNames[result.model.order] + (" row offset, " + px(result.offset_rms_px)) + " RMS";
   } else if (choice.order >= 0) {
@@ -252,11 +256,7 @@ void describe(const RowAlignmentParams& params, const Choice& choice, RowAlignme
   } else {
     result.note = "identity: matches held out of the fit do not support an offset";
   }
-  if (choice.bend_px > 0.0) {
-    result.note += "; the rows bend by " + px(choice.bend_px) + ", which is left alone";
-    result.warning = "the rows of one view are bent against the other's by " + px(choice.bend_px) +
-                     ": calibrate the lenses anew";
-  } else if (result.offset_rms_px > params.warn_px) {
+  if (result.offset_rms_px > params.warn_px) {
     result.warning = "the rows of the views are off by " + px(result.offset_rms_px) + " RMS: calibrate the cameras anew";
   }
 }
@@ -318,6 +318,9 @@ RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::
   history_.erase(std::remove_if(history_.begin(), history_.end(), [](const Aged& a) { return a.weight < kForgotten; }),
                  history_.end());
   for (const FeatureMatch& m : matches) history_.push_back({m, 1.0});
+  if (history_.size() > std::max(kMaxHistory, matches.size())) {
+    history_.erase(history_.begin(), history_.end() - std::max(kMaxHistory, matches.size()));
+  }
   std::vector<Sample> samples;
   for (const Aged& aged : history_) samples.push_back(makeSample(aged.match, aged.weight, size));
   const RowAlignment result = estimate(samples, size, params);
