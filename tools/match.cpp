@@ -23,6 +23,7 @@ struct Options {
   std::string color;
   std::string confidence;
   std::string timings;
+  std::string row_alignment;
   std::string seeds;
   bool log_energy = false;
   PipelineOptions pipeline;
@@ -39,6 +40,8 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--seeds", options.seeds, "Seeds of another sensor: text 'x y d [trust]', 16-bit .png or .pfm");
   app.add_option("--color", options.color, "Write the disparity in colours, black = none");
   app.add_option("--confidence", options.confidence, "Write the confidence 0..1: .pfm, or an 8-bit picture");
+  app.add_option("--row-alignment", options.row_alignment,
+                 "Draw the row offset between the views and what it leaves of each match");
   app.add_option("--timings", options.timings, "Write times, memory and what the stages found as JSON");
   app.add_flag("--log-energy", options.log_energy, "Print the energy after each iteration of local_expansion");
   std::string names;
@@ -57,11 +60,6 @@ double totalMs(const PipelineResult& result) {
   return total;
 }
 
-std::string modelName(const RowOffsetModel& model) {
-  const char* names[] = {"identity", "constant", "affine", "quadratic"};
-  return names[model.order + 1];
-}
-
 std::string timingsJson(const PipelineResult& result, const PipelineParams& params) {
   JsonWriter json;
   json.open('{').add("width", result.disparity.cols).add("height", result.disparity.rows);
@@ -75,9 +73,10 @@ std::string timingsJson(const PipelineResult& result, const PipelineParams& para
   json.add("rejected_seeds", static_cast<double>(result.rejected_seeds.size()));
   json.add("propagated_share", result.propagated_share).add("feature_note", result.feature_note);
   const RowAlignment& rows = result.row_alignment;
-  json.open('{', "row_alignment").add("model", modelName(rows.model)).add("matches_used", rows.matches_used);
+  json.open('{', "row_alignment").add("model", rows.model.name()).add("matches_used", rows.matches_used);
   json.add("rms_before_px", rows.rms_before_px).add("rms_after_px", rows.rms_after_px);
-  json.add("offset_rms_px", rows.offset_rms_px).add("sigma_px", rows.sigma_px).add("note", rows.note).close('}');
+  json.add("offset_rms_px", rows.offset_rms_px).add("sigma_px", rows.sigma_px).add("note", rows.note);
+  json.add("warning", rows.warning).close('}');
   json.open('[', "energies");
   for (const double energy : result.energies) json.add("", energy);
   return json.close(']').close('}').text();
@@ -95,10 +94,14 @@ void writeConfidence(const std::string& path, const cv::Mat& confidence) {
   pfm ? writeDisparity(path, confidence) : writeImage(path, confidenceToGrey(confidence));
 }
 
-void writeOutputs(const Options& options, const PipelineParams& params, const PipelineResult& result) {
+void writeOutputs(const Options& options, const PipelineParams& params, const cv::Mat& left,
+                  const PipelineResult& result) {
   writeDisparity(options.output, result.disparity);
   if (!options.color.empty()) writeImage(options.color, colorize(result.disparity, params.search));
   if (!options.confidence.empty()) writeConfidence(options.confidence, result.confidence);
+  if (!options.row_alignment.empty()) {
+    writeImage(options.row_alignment, drawRowAlignment(left, result.matches, result.row_alignment));
+  }
   if (!options.timings.empty()) writeText(options.timings, timingsJson(result, params));
 }
 
@@ -111,12 +114,9 @@ void printSummary(const Options& options, const PipelineParams& params, const Pi
   if (!result.feature_note.empty()) std::cout << "features: " << result.feature_note << '\n';
   const RowAlignment& rows = result.row_alignment;
   if (params.row_alignment.enabled) {
-    std::cout << "row alignment: " << modelName(rows.model) << " from " << rows.matches_used << " matches, rows off by "
+    std::cout << "row alignment: " << rows.model.name() << " from " << rows.matches_used << " matches, rows off by "
               << rows.rms_before_px << " px RMS, " << rows.rms_after_px << " px after\n";
-    if (rows.offset_rms_px > params.row_alignment.warn_px) {
-      std::cout << "warning: the rows of the pair are " << rows.offset_rms_px
-                << " px apart, calibrate the cameras anew\n";
-    }
+    if (!rows.warning.empty()) std::cout << "warning: " << rows.warning << '\n';
   }
   std::cout << options.output << ": " << result.disparity.cols << " x " << result.disparity.rows << ", "
             << 100.0 * validShare(result.disparity) << " % valid, " << result.seeds.size() << " seeds, "
@@ -132,7 +132,7 @@ int match(const Options& options) {
   const cv::Mat right = readImage(options.right);
   const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds);
   const PipelineResult result = Pipeline(params).run(left, right, seeds);
-  writeOutputs(options, params, result);
+  writeOutputs(options, params, left, result);
   printSummary(options, params, result);
   return 0;
 }

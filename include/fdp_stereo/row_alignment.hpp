@@ -36,6 +36,8 @@ struct RowOffsetModel {
   int order = -1;  ///< -1 identity, 0 constant, 1 affine, 2 quadratic, 3 quadratic and radial
   cv::Size size;
   bool identity() const { return order < 0; }
+  /// "identity", "constant", "affine", "quadratic" or "radial".
+  const char* name() const;
   /// px; x, y in px of the aligned right image.
   double offsetAt(double x, double y) const;
 };

@@ -248,9 +248,8 @@ void measure(const std::vector<Sample>& samples, RowAlignment& result) {
 
 /// The note and the warning of a choice.
 void describe(const RowAlignmentParams& params, const Choice& choice, RowAlignment& result) {
-  static const std::array<const char*, 4> kNames = {"constant", "affine", "quadratic", "radial"};
   if (!result.model.identity()) {
-    result.note = kNames[result.model.order] + (" row offset, " + px(result.offset_rms_px)) + " RMS";
+    result.note = result.model.name() + (" row offset, " + px(result.offset_rms_px)) + " RMS";
   } else if (choice.order >= 0) {
     result.note = "identity: the offset is only " + px(choice.offset_rms_px);
   } else {
@@ -285,6 +284,11 @@ RowAlignment estimate(const std::vector<Sample>& samples, cv::Size size, const R
 }
 
 }  // namespace
+
+const char* RowOffsetModel::name() const {
+  static const std::array<const char*, 5> kNames = {"identity", "constant", "affine", "quadratic", "radial"};
+  return kNames.at(order + 1);
+}
 
 double RowOffsetModel::offsetAt(double x, double y) const {
   return identity() ? 0.0 : basisAt(x, y, size).dot(coefficients);

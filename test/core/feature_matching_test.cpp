@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/image_preparation.hpp"
+
 namespace fdp_stereo {
 namespace {
 
@@ -36,6 +38,13 @@ StereoPair shifted(double disparity, double row, int channels = 1) {
   };
   pair.left = cut(0, 0);
   pair.right = cut(disparity, row);
+  return pair;
+}
+
+StereoPair views(const cv::Mat& left, const cv::Mat& right) {
+  StereoPair pair;
+  pair.left = left;
+  pair.right = right;
   return pair;
 }
 
@@ -98,7 +107,7 @@ TEST_P(EachDetector, NothingToMatchIsNoError) {
   const FeatureMatchingParams params = paramsOf(GetParam());
   for (const cv::Size size : {cv::Size(64, 48), cv::Size(7, 5), cv::Size(1, 1), cv::Size(200, 1)}) {
     const cv::Mat flat(size, CV_8UC1, cv::Scalar(90));
-    EXPECT_TRUE(matchFeatures({flat, flat}, {0, 16}, params).matches.empty());
+    EXPECT_TRUE(matchFeatures(prepareImages(flat, flat), {0, 16}, params).matches.empty());
   }
 }
 
@@ -133,8 +142,8 @@ TEST(FeatureMatching, RejectsViewsThatDoNotFit) {
   const cv::Mat image(20, 20, CV_8UC1, cv::Scalar(0));
   const cv::Mat other(20, 21, CV_8UC1, cv::Scalar(0));
   const cv::Mat wide(20, 20, CV_16UC1, cv::Scalar(0));
-  EXPECT_THROW(matchFeatures({image, other}, {0, 16}, {}), std::invalid_argument);
-  EXPECT_THROW(matchFeatures({wide, wide}, {0, 16}, {}), std::invalid_argument);
+  EXPECT_THROW(matchFeatures(views(image, other), {0, 16}, {}), std::invalid_argument);
+  EXPECT_THROW(matchFeatures(views(wide, wide), {0, 16}, {}), std::invalid_argument);
 }
 
 }  // namespace
