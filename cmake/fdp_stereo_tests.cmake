@@ -11,9 +11,26 @@ foreach(source IN LISTS FDP_STEREO_CORE_TESTS)
   target_compile_definitions(${name} PRIVATE FDP_STEREO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE fdp_stereo_core GTest::gtest GTest::gtest_main OpenMP::OpenMP_CXX)
   add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS core)
   list(APPEND FDP_STEREO_CORE_TEST_TARGETS ${name})
 endforeach()
 add_custom_target(core_tests DEPENDS ${FDP_STEREO_CORE_TEST_TARGETS})
 if(TARGET tests)
   add_dependencies(tests core_tests)
 endif()
+
+# Every test/tools/*_test.py drives the programs as a user does.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+file(GLOB FDP_STEREO_TOOL_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/tools/*_test.py)
+foreach(script IN LISTS FDP_STEREO_TOOL_TESTS)
+  get_filename_component(name ${script} NAME_WE)
+  add_test(NAME tool_${name} COMMAND ${Python3_EXECUTABLE} ${script})
+  set_tests_properties(tool_${name} PROPERTIES LABELS tools
+    ENVIRONMENT "FDP_STEREO_BIN=$<TARGET_FILE_DIR:match>;FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
+endforeach()
+
+# The linters of scripts/lint.sh; tidy reads the compile commands of this build.
+foreach(check format shell catkin tidy)
+  add_test(NAME lint_${check} COMMAND ${PROJECT_SOURCE_DIR}/scripts/lint.sh ${check} ${PROJECT_BINARY_DIR})
+  set_tests_properties(lint_${check} PROPERTIES LABELS lint)
+endforeach()

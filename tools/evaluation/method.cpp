@@ -31,8 +31,8 @@ cv::Ptr<cv::StereoMatcher> makeBm(int disparities) {
   return matcher;
 }
 
-/// 8-bit image with `border` columns repeated on the left, so that the matcher answers there too. StereoSGBM's penalties
-/// above are those for three channels, so it is given three.
+/// 8-bit image with `border` columns repeated on the left, so that the matcher answers there too. StereoSGBM's
+/// penalties above are those for three channels, so it is given three.
 cv::Mat peerImage(const cv::Mat& image, int border, bool grey) {
   cv::Mat prepared = image;
   if (prepared.depth() == CV_16U) prepared.convertTo(prepared, CV_8U, 1.0 / 256.0);

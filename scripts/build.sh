@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# build.sh [CMAKE OPTION...]: builds everything but the tests in Release mode into build/. The programs land in
+# build/devel/lib/fdp_stereo/.
+set -euo pipefail
+# shellcheck source=scripts/environment.sh
+. "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
+cd "$FDP_STEREO_ROOT"
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+cmake --build build

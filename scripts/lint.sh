@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# lint.sh [format|shell|catkin|tidy|all [BUILD FOLDER]]: the linters that the tests run; needs scripts/setup.sh --test,
+# and tidy a configured build folder (build/ by default).
+set -euo pipefail
+# shellcheck source=scripts/environment.sh
+. "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
+cd "$FDP_STEREO_ROOT"
+build="${2:-build}"
+
+sources() { git ls-files -- 'include/*.hpp' 'src/*.[ch]pp' 'tools/*.[ch]pp' 'benchmark/*.[ch]pp' 'test/*.[ch]pp'; }
+
+lint_format() { sources | xargs clang-format --dry-run --Werror; }
+lint_shell() { git ls-files -- 'scripts/*.sh' .ci/run | xargs shellcheck -x; }
+lint_catkin() { catkin_lint -W2 .; }
+lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet; }
+
+case "${1:-all}" in
+  format | shell | catkin | tidy) "lint_$1" ;;
+  all) lint_format && lint_shell && lint_catkin && lint_tidy ;;
+  *) echo "lint.sh: unknown check '$1', there are format, shell, catkin, tidy, all" >&2; exit 2 ;;
+esac

@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""evaluate against a scoring of its own here, and what it does with broken, interrupted and divided runs."""
+import csv
+import os
+import tempfile
+import unittest
+
+import cv2
+import numpy as np
+
+from support import read_pfm, run, write_scene
+
+BAD = {"bad_0.125": 0.125, "bad_0.25": 0.25, "bad_0.5": 0.5, "bad_1": 1.0, "bad_2": 2.0}
+
+
+def score(disparity, truth, region):
+    """The figures of one map, straight from their definition."""
+    use = np.isfinite(truth) & region
+    answered = np.isfinite(disparity) & (disparity >= 0)
+    error = np.where(answered, np.abs(np.where(answered, disparity, 0) - np.where(use, truth, 0)), np.inf)[use]
+    figures = {name: 100.0 * np.mean(error > limit) for name, limit in BAD.items()}
+    known = error[np.isfinite(error)]
+    figures["density"] = 100.0 * len(known) / len(error)
+    figures["sparse_bad_0.5"] = 100.0 * np.mean(known > 0.5)
+    figures["average_px"] = np.minimum(known, 100.0).mean()
+    return figures
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        return {(row["scene"], row["method"]): row for row in csv.DictReader(file)}
+
+
+class EvaluateTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.scenes = [self.path("scenes/one"), self.path("scenes/two"), self.path("scenes/Playtable")]
+        self.truths = [write_scene(scene, seed) for seed, scene in enumerate(self.scenes)]
+        self.table, self.report = self.path("table.csv"), self.path("report")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def evaluate(self, *arguments, code=0):
+        actual, out, err = run("evaluate", *arguments)
+        self.assertEqual(actual, code, err)
+        return out, err
+
+    def test_figures_follow_their_definition(self):
+        for options in ([], ["--fill"], ["--all"]):
+            self.evaluate(*self.scenes, "--preset", "fast", "--preset", "paper", "--csv", self.table, *options)
+            rows = read_csv(self.table)
+            for preset in ("fast", "paper"):
+                output = self.path("d.pfm")
+                run("match", self.scenes[0] + "/im0.png", self.scenes[0] + "/im1.png", "--output", output,
+                    "--num-disparities", 16, "--preset", preset, *[o for o in options if o == "--fill"])
+                truth, mask = self.truths[0]
+                region = np.ones(mask.shape, bool) if "--all" in options else mask == 255
+                for name, value in score(read_pfm(output), truth, region).items():
+                    self.assertAlmostEqual(float(rows["one", preset][name]), value, places=4, msg=name)
+
+    def test_the_mean_halves_the_scenes_that_middlebury_halves(self):
+        out, _ = self.evaluate(*self.scenes, "--csv", self.table)
+        rows = read_csv(self.table)
+        weights = {"one": 1.0, "two": 1.0, "Playtable": 0.5}
+        mean = sum(weight * float(rows[scene, "fast"]["bad_1"]) for scene, weight in weights.items()) / 2.5
+        line = next(line for line in out.splitlines() if line.startswith("mean of 3"))
+        self.assertAlmostEqual(float(line.split()[4 + 3]), mean, places=1)
+
+    def test_a_folder_of_scenes_stands_for_them(self):
+        self.evaluate(self.path("scenes"), "--csv", self.table)
+        self.assertEqual({scene for scene, _ in read_csv(self.table)}, {"one", "two", "Playtable"})
+
+    def test_goes_on_after_a_broken_scene_and_names_it(self):
+        os.remove(self.scenes[0] + "/im1.png")
+        with open(self.scenes[1] + "/disp0GT.pfm", "r+b") as file:
+            file.truncate(100)
+        out, err = self.evaluate(*self.scenes, self.path("none"), "--csv", self.table, code=1)
+        self.assertIn("one/im1.png: missing", err)
+        self.assertIn("disp0GT.pfm: truncated", err)
+        self.assertIn("none: no such folder", err)
+        self.assertEqual(set(read_csv(self.table)), {("Playtable", "fast")})
+        self.assertIn("mean of 1", out)
+
+    def test_peers_and_variants_stand_beside_the_presets(self):
+        self.evaluate(self.scenes[0], "--peers", "--preset", "fast", "--variant",
+                      "wta=fast,optimizer.type=winner_takes_all", "--csv", self.table)
+        rows = read_csv(self.table)
+        self.assertEqual([method for _, method in rows], ["fast", "wta", "sgbm_hh", "sgbm_3way", "bm"])
+        self.assertNotEqual(rows["one", "fast"]["bad_1"], rows["one", "wta"]["bad_1"])
+        for method in ("sgbm_hh", "sgbm_3way", "bm"):
+            self.assertLess(float(rows["one", method]["bad_2"]), 40.0)
+            self.assertGreater(float(rows["one", method]["time_ms"]), 0.0)
+
+    def test_writes_the_pictures(self):
+        self.evaluate(self.scenes[0], "--report", self.report)
+        for name in ("left", "truth", "fast_disparity", "fast_errors", "fast_invalid"):
+            picture = cv2.imread(os.path.join(self.report, "one", name + ".png"))
+            self.assertEqual(picture.shape[:2], self.truths[0][0].shape, name)
+
+    def test_goes_on_where_an_interrupted_run_stopped(self):
+        self.evaluate(*self.scenes, "--report", self.report)
+        table = os.path.join(self.report, "results.csv")
+        with open(table) as file:
+            lines = file.read().splitlines()
+        fields = lines[1].split(",")
+        fields[2] = "77.5"
+        with open(table, "w") as file:  # the first scene as if done before, with a mark; the others not yet
+            file.write("\n".join([lines[0], ",".join(fields)]) + "\n")
+        self.evaluate(*self.scenes, "--report", self.report)
+        rows = read_csv(table)
+        self.assertEqual(len(rows), 3)
+        self.assertEqual(float(rows["one", "fast"]["bad_0.125"]), 77.5)
+        self.evaluate(*self.scenes, "--report", self.report, "--set", "semi_global.p1=0.5")
+        self.assertNotEqual(float(read_csv(table)["one", "fast"]["bad_0.125"]), 77.5, "other settings are done anew")
+
+    def test_jobs_give_the_same_figures(self):
+        self.evaluate(*self.scenes, "--csv", self.table)
+        one = read_csv(self.table)
+        self.evaluate(*self.scenes, "--csv", self.table, "--jobs", 3)
+        three = read_csv(self.table)
+        self.assertEqual(set(one), set(three))
+        for key, row in one.items():
+            for name in BAD:
+                self.assertEqual(row[name], three[key][name])
+
+    def test_wrong_usage_is_2(self):
+        for part, arguments in (("required", []), ("NAME=PRESET", ["x", "--variant", "nothing"]),
+                                ("unknown preset", ["x", "--preset", "fats"]),
+                                ("two methods", ["x", "--preset", "fast", "--preset", "fast"]),
+                                ("name of a method", ["x", "--variant", "a b=fast"]),
+                                ("1 <= i <= n", ["x", "--shard", "3/2"]), ("--report", ["x", "--shard", "1/2"]),
+                                ("--jobs", ["x", "--jobs", "0"])):
+            _, err = self.evaluate(*arguments, code=2)
+            self.assertIn(part, err)
+            self.assertEqual(err.count("\n"), 1, err)
+
+
+if __name__ == "__main__":
+    unittest.main()
