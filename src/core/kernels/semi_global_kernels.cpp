@@ -29,6 +29,7 @@ void stepTwo(PathStep<T>& step, int count, std::uint16_t* __restrict sums) {
   const T p1 = step.p1;
   const T jump0 = step.jump[0], jump1 = step.jump[1];
   const T least0 = step.smallest_before[0], least1 = step.smallest_before[1];
+#pragma omp simd reduction(min : smallest0, smallest1)
   for (int i = 0; i < count; ++i) {
     const T a = pathCost(before0, i, costs[i], p1, jump0, least0);
     const T b = pathCost(before1, i, costs[i], p1, jump1, least1);
@@ -59,6 +60,7 @@ void stepFour(PathStep<T>& step, int count, std::uint16_t* __restrict sums) {
   const T jump0 = step.jump[0], jump1 = step.jump[1], jump2 = step.jump[2], jump3 = step.jump[3];
   const T least0 = step.smallest_before[0], least1 = step.smallest_before[1];
   const T least2 = step.smallest_before[2], least3 = step.smallest_before[3];
+#pragma omp simd reduction(min : smallest0, smallest1, smallest2, smallest3)
   for (int i = 0; i < count; ++i) {
     const T a = pathCost(before0, i, costs[i], p1, jump0, least0);
     const T b = pathCost(before1, i, costs[i], p1, jump1, least1);
@@ -98,8 +100,9 @@ std::uint16_t minimum(const std::uint16_t* values, int count) {
 
 int find(const std::uint16_t* values, int count, std::uint16_t value) {
   std::uint16_t first = static_cast<std::uint16_t>(count);
-  for (int i = 0; i < count; ++i) {
-    const std::uint16_t index = values[i] == value ? static_cast<std::uint16_t>(i) : std::uint16_t{65535};
+#pragma omp simd reduction(min : first)
+  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(count); ++i) {
+    const std::uint16_t index = values[i] == value ? i : std::uint16_t{65535};
     first = smaller(first, index);
   }
   return first;
