@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fdp_stereo/disparity_propagation.hpp"
+#include "fdp_stereo/disparity_smoothing.hpp"
 #include "fdp_stereo/feature_matching.hpp"
 #include "fdp_stereo/hole_filling.hpp"
 #include "fdp_stereo/left_right_check.hpp"
@@ -40,6 +41,7 @@ struct PipelineParams {
   SpeckleFilterParams speckle_filter;
   HoleFillingParams hole_filling;
   WeightedMedianParams weighted_median;
+  DisparitySmoothingParams disparity_smoothing;
 };
 
 /// A named choice, set and read by the name of its value.

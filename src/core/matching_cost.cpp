@@ -43,8 +43,8 @@ Planes rhoPlanes(const cv::Mat& image, double alpha, bool gradient) {
   Planes planes;
   const double colour_share = gradient ? 1.0 - alpha : 1.0;
   cv::Mat channels[3];
-  cv::split(image, channels);
-  for (int c = 0; c < image.channels(); ++c) {
+  if (colour_share > 0.0) cv::split(image, channels);
+  for (int c = 0; colour_share > 0.0 && c < image.channels(); ++c) {
     planes.data.push_back(scaled(channels[c], colour_share / image.channels() * kUnitsPerGreyLevel));
   }
   if (!gradient) return planes;

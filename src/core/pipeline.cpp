@@ -154,6 +154,7 @@ void Pipeline::postProcess(const StereoPair& pair, OptimizerOutput& optimized, P
   const cv::Mat holes = ~(disparity == disparity);  // OpenCV finds no NaN by != where it compares vectors
   if (params_.hole_filling.enabled) fillHoles(disparity);
   filterWeightedMedian(disparity, pair.left, holes, params_.weighted_median);
+  smoothDisparity(disparity, pair.left, params_.disparity_smoothing);
   result.disparity = disparity;
   result.confidence = optimized.confidence.clone();
   result.confidence.setTo(0.0F, ~(disparity == disparity));

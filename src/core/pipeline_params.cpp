@@ -232,7 +232,15 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.add("radius", p.weighted_median.radius, 0, 50, "px", "Radius of the window of the weighted median; 0 is off.");
   list.add("gamma", p.weighted_median.gamma, 0.0, 1000.0, "",
            "Colour difference at which a neighbour's weight falls to 1/e; 0 is the plain median.");
+  list.add("min_range_px", p.weighted_median.min_range_px, 0.0, 10.0, "px",
+           "Smooth only where neighbouring disparities differ by more; 0 smooths everywhere.");
   list.add("only_filled", p.weighted_median.only_filled, "Smooth only the pixels that were filled.");
+  list.stage("disparity_smoothing");
+  list.add("radius", p.disparity_smoothing.radius, 0, 20, "px", "Reach of the edge-preserving mean; 0 is off.");
+  list.add("gamma", p.disparity_smoothing.gamma, 0.1, 1000.0, "",
+           "Colour difference at which a neighbour's weight is halved.");
+  list.add("max_difference_px", p.disparity_smoothing.max_difference_px, 0.01, 10.0, "px",
+           "Neighbours whose disparity differs by more do not count.");
 }
 
 template <typename... Fs>

@@ -24,6 +24,7 @@ void absoluteDifferences(const std::int16_t* left, const std::int16_t* right, in
                          std::uint16_t limit, std::uint16_t* sums) {
   switch (planes) {
     case 1: return absoluteDifferencesOf<1>(left, right, plane_stride, count, limit, sums);
+    case 2: return absoluteDifferencesOf<2>(left, right, plane_stride, count, limit, sums);
     case 3: return absoluteDifferencesOf<3>(left, right, plane_stride, count, limit, sums);
     default: return absoluteDifferencesOf<5>(left, right, plane_stride, count, limit, sums);
   }
