@@ -85,6 +85,14 @@ struct CostSource {
   int shift = 0;
 };
 
+/// Into memory of its own: the grey image may be the caller's.
+cv::Mat blurred(const cv::Mat& grey, double sigma_px) {
+  if (sigma_px <= 0.0) return grey;
+  cv::Mat result;
+  cv::GaussianBlur(grey, result, {}, sigma_px, 0, cv::BORDER_REPLICATE);
+  return result;
+}
+
 void addCensus(const StereoPair& pair, const MatchingCostParams& params, CostSource& source) {
   const int scales = std::clamp(params.scales, 1, 3);
   double sum = 0.0;
@@ -92,13 +100,8 @@ void addCensus(const StereoPair& pair, const MatchingCostParams& params, CostSou
   source.left_codes.resize(scales);
   source.right_codes.resize(scales);
   for (int i = 0; i < scales; ++i) {
-    cv::Mat left = pair.left_grey, right = pair.right_grey;
-    if (params.scale_sigmas_px[i] > 0.0) {
-      cv::GaussianBlur(pair.left_grey, left, {}, params.scale_sigmas_px[i], 0, cv::BORDER_REPLICATE);
-      cv::GaussianBlur(pair.right_grey, right, {}, params.scale_sigmas_px[i], 0, cv::BORDER_REPLICATE);
-    }
-    computeCensus(left, params.census, source.left_codes[i]);
-    computeCensus(right, params.census, source.right_codes[i]);
+    computeCensus(blurred(pair.left_grey, params.scale_sigmas_px[i]), params.census, source.left_codes[i]);
+    computeCensus(blurred(pair.right_grey, params.scale_sigmas_px[i]), params.census, source.right_codes[i]);
     const double weight = sum > 0.0 ? params.scale_weights[i] / sum : 1.0 / scales;
     source.bit_weights.push_back(static_cast<std::uint16_t>(std::lround(weight * kUnitsPerBit)));
   }

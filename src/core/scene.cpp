@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <regex>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 
@@ -30,14 +30,29 @@ std::string firstOf(const fs::path& folder, std::initializer_list<const char*> n
   return "";
 }
 
-/// The first group that `pattern` finds in a small text file; "" for no file or no match.
-std::string findInFile(const std::string& path, const std::string& pattern) {
-  std::ifstream file(path);
+std::string readText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
   std::string text(kMaxCalibrationBytes, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  std::smatch match;
-  return std::regex_search(text, match, std::regex(pattern)) ? match[1].str() : "";
+  return text;
+}
+
+/// What follows "key=" at the beginning of a line of a calibration; "" for no file or no such line.
+std::string calibrationValue(const std::string& path, const std::string& key) {
+  std::istringstream lines(readText(path));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    if (line.substr(0, line.find_last_not_of(" \t", equals - 1) + 1) == key) return line.substr(equals + 1);
+  }
+  return "";
+}
+
+/// The first digits of a text on.
+std::string fromFirstDigit(const std::string& text) {
+  const std::size_t digit = text.find_first_of("0123456789.");
+  return digit == std::string::npos ? "" : text.substr(digit);
 }
 
 double positiveNumber(const std::string& path, const std::string& text) {
@@ -61,10 +76,10 @@ SceneFiles middleburyScene(const fs::path& folder) {
   files.truth = firstOf(folder, {"disp0GT.pfm", "disp0.pfm", "disp0GT.png"});
   files.mask = firstOf(folder, {"mask0nocc.png"});
   const std::string scale = firstOf(folder, {"disp0GT.scale.txt"});
-  if (!scale.empty()) files.truth_png_scale = positiveNumber(scale, findInFile(scale, "([0-9.]+)"));
+  if (!scale.empty()) files.truth_png_scale = positiveNumber(scale, fromFirstDigit(readText(scale)));
   const std::string calibration = firstOf(folder, {"calib.txt"});
-  const std::string count = findInFile(calibration, "ndisp[ \t]*=[ \t]*([0-9]{1,6})");
-  if (!count.empty()) files.num_disparities = static_cast<int>(positiveNumber(calibration, count));
+  const std::string count = calibrationValue(calibration, "ndisp");
+  if (!count.empty()) files.num_disparities = static_cast<int>(std::min(positiveNumber(calibration, count), 1e6));
   return files;
 }
 
