@@ -13,9 +13,9 @@
 #include <map>
 #include <sstream>
 
-#include <opencv2/imgproc.hpp>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <opencv2/imgproc.hpp>
 
 #include "conversions.hpp"
 #include "fdp_stereo/io.hpp"

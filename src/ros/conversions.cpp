@@ -8,9 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <sensor_msgs/image_encodings.h>
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sensor_msgs/image_encodings.h>
 
 namespace fdp_stereo {
 namespace {
@@ -137,12 +137,18 @@ cv::Mat wrapOrCopy(const sensor_msgs::Image& message, int type) {
 
 std::string encodingOf(int type) {
   switch (type) {
-    case CV_8UC1: return enc::MONO8;
-    case CV_8UC3: return enc::BGR8;
-    case CV_16UC1: return enc::MONO16;
-    case CV_16UC3: return enc::BGR16;
-    case CV_32FC1: return enc::TYPE_32FC1;
-    default: fail("an image of OpenCV type ", type, " cannot be published; 8 or 16 bit, grey or BGR, or 32FC1 can");
+    case CV_8UC1:
+      return enc::MONO8;
+    case CV_8UC3:
+      return enc::BGR8;
+    case CV_16UC1:
+      return enc::MONO16;
+    case CV_16UC3:
+      return enc::BGR16;
+    case CV_32FC1:
+      return enc::TYPE_32FC1;
+    default:
+      fail("an image of OpenCV type ", type, " cannot be published; 8 or 16 bit, grey or BGR, or 32FC1 can");
   }
 }
 

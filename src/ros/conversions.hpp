@@ -25,8 +25,8 @@ struct StereoTopics {
 /// Geometry of a rectified pair in px of the images as published (binning and region of interest applied).
 struct StereoGeometry {
   double focal_px = 0.0;
-  double baseline_m = 0.0;     ///< > 0
-  double cx_offset_px = 0.0;   ///< cx_left - cx_right: 0 for parallel cameras, not 0 for verged ones
+  double baseline_m = 0.0;    ///< > 0
+  double cx_offset_px = 0.0;  ///< cx_left - cx_right: 0 for parallel cameras, not 0 for verged ones
   /// The disparity as published: (x_l - x_r) - (cx_l - cx_r), so that Z = f T / d.
   double published(double disparity) const { return disparity - cx_offset_px; }
 };

@@ -13,8 +13,8 @@
 #include <message_filters/sync_policies/exact_time.h>
 #include <message_filters/synchronizer.h>
 #include <nodelet/nodelet.h>
-#include <pluginlib/class_list_macros.hpp>
 #include <ros/master.h>
+#include <pluginlib/class_list_macros.hpp>
 
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
@@ -53,6 +53,7 @@ class DisparityNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() override;
+  ros::WallDuration period(const std::string& name, double fallback_s) const;
   void advertise();
   void onSubscriberChange();
   bool wanted() const;
@@ -157,12 +158,17 @@ void DisparityNodelet::onInit() {
   diagnostics_ = std::make_unique<diagnostic_updater::Updater>(node, private_node, getName());
   diagnostics_->setHardwareID("none");
   diagnostics_->add("Disparity", this, &DisparityNodelet::onDiagnostics);
-  diagnostics_timer_ = node.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
+  diagnostics_timer_ = node.createWallTimer(period("diagnostic_period", kDiagnosticsPeriod),
                                             [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
-  const double watch_period = private_node.param("watch_period", kWatchPeriod);
-  watch_timer_ = node.createWallTimer(ros::WallDuration(std::max(0.1, watch_period)),
-                                      [this](const ros::WallTimerEvent&) { watch(); });
+  watch_timer_ =
+      node.createWallTimer(period("watch_period", kWatchPeriod), [this](const ros::WallTimerEvent&) { watch(); });
   advertise();
+}
+
+ros::WallDuration DisparityNodelet::period(const std::string& name, double fallback_s) const {
+  constexpr double kShortest = 0.02;  // s
+  const double wanted = getPrivateNodeHandle().param(name, fallback_s);
+  return ros::WallDuration(wanted >= kShortest && wanted <= 3600.0 ? wanted : fallback_s);
 }
 
 void DisparityNodelet::advertise() {

@@ -49,9 +49,9 @@ double validShare(const cv::Mat& disparity) {
 /// 1 px where the optimiser gives whole disparities; fits and planes are continuous, told as OpenCV's 1/16 px.
 double disparityStep(const PipelineParams& params) {
   constexpr double kContinuous = 1.0 / 16.0;
-  const bool whole = (params.optimizer == OptimizerType::kWinnerTakesAll &&
-                      params.winner_takes_all.subpixel == SubpixelFit::kNone) ||
-                     (params.optimizer == OptimizerType::kSemiGlobal && params.semi_global.subpixel == SubpixelFit::kNone);
+  const bool whole =
+      (params.optimizer == OptimizerType::kWinnerTakesAll && params.winner_takes_all.subpixel == SubpixelFit::kNone) ||
+      (params.optimizer == OptimizerType::kSemiGlobal && params.semi_global.subpixel == SubpixelFit::kNone);
   return whole ? 1.0 : kContinuous;
 }
 
@@ -63,8 +63,8 @@ sensor_msgs::CameraInfoPtr depthInfo(const StereoFrame& frame) {
 
 }  // namespace
 
-FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings,
-                                    const WantedOutputs& wanted, const std::atomic<bool>* cancel) {
+FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
+                                    const std::atomic<bool>* cancel) {
   FrameOutput output;
   const StereoPair pair = decodePair(frame, output.report.warnings);
   const StereoGeometry geometry =
@@ -78,12 +78,11 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
 
   const std_msgs::Header& header = frame.left->header;
   if (wanted.disparity) {
-    output.disparity =
-        toDisparityMessage(result.disparity, header, geometry, range, disparityStep(settings.pipeline));
+    output.disparity = toDisparityMessage(result.disparity, header, geometry, range, disparityStep(settings.pipeline));
   }
   if (wanted.depth) {
-    output.depth = toDepthMessage(result.disparity, header, geometry,
-                                  {settings.node.min_depth_m, settings.node.max_depth_m});
+    output.depth =
+        toDepthMessage(result.disparity, header, geometry, {settings.node.min_depth_m, settings.node.max_depth_m});
     output.depth_info = depthInfo(frame);
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);

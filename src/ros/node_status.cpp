@@ -34,9 +34,9 @@ std::string missingTopics(const NodeStatus& now, const NodeStatus& before) {
 
 /// All topics arrive, so their stamps do not meet.
 std::string stampCause(const NodeStatus& status) {
-  const auto [first, last] =
-      std::minmax_element(status.inputs.begin(), status.inputs.end(),
-                          [](const InputStatus& a, const InputStatus& b) { return a.stamp < b.stamp; });
+  const auto earlier = [](const InputStatus& a, const InputStatus& b) { return a.stamp < b.stamp; };
+  const auto first = std::min_element(status.inputs.begin(), status.inputs.end(), earlier);
+  const auto last = std::max_element(status.inputs.begin(), status.inputs.end(), earlier);
   std::ostringstream text;
   text.precision(4);
   text << "the newest stamps of " << first->topic << " and " << last->topic << " are apart by "

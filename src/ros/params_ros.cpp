@@ -33,10 +33,11 @@ double getNumber(const ParamRef& ref) {
 }
 
 void setNumber(const ParamRef& ref, double number) {
-  std::visit(Overloaded{[&](const EnumRef& choice) { choice.set(static_cast<int>(number)); },
-                        [&](bool* value) { *value = number != 0.0; },
-                        [&](int* value) { *value = static_cast<int>(number); }, [&](double* value) { *value = number; }},
-             ref.value);
+  std::visit(
+      Overloaded{[&](const EnumRef& choice) { choice.set(static_cast<int>(number)); },
+                 [&](bool* value) { *value = number != 0.0; }, [&](int* value) { *value = static_cast<int>(number); },
+                 [&](double* value) { *value = number; }},
+      ref.value);
 }
 
 const ParamRef* findByRosName(const std::vector<ParamRef>& refs, const std::string& name) {
@@ -240,8 +241,8 @@ std::string parameterLines(const ParamRef& ref) {
   if (std::holds_alternative<bool*>(ref.value)) {
     return "group.add(" + name + ", bool_t, 0, " + text + ", " + (getNumber(ref) != 0.0 ? "True" : "False") + ")\n";
   }
-  const std::string numbers = pythonNumber(ref, getNumber(ref)) + ", " + pythonNumber(ref, ref.min) + ", " +
-                              pythonNumber(ref, ref.max);
+  const std::string numbers =
+      pythonNumber(ref, getNumber(ref)) + ", " + pythonNumber(ref, ref.min) + ", " + pythonNumber(ref, ref.max);
   if (const auto* choice = std::get_if<EnumRef>(&ref.value)) {
     return enumLines(ref, *choice) + "group.add(" + name + ", int_t, 0, " + text + ", " + numbers +
            ", edit_method=" + ref.ros_name + ")\n";

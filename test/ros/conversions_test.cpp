@@ -45,13 +45,13 @@ void expectContains(const std::string& text, const std::vector<std::string>& par
 
 TEST(DecodeImage, NativeEncodingsShareTheMessage) {
   for (const auto& [encoding, type] : std::vector<std::pair<std::string, int>>{{"mono8", CV_8UC1},
-                                                                              {"8UC1", CV_8UC1},
-                                                                              {"mono16", CV_16UC1},
-                                                                              {"16UC1", CV_16UC1},
-                                                                              {"bgr8", CV_8UC3},
-                                                                              {"8UC3", CV_8UC3},
-                                                                              {"bgr16", CV_16UC3},
-                                                                              {"16UC3", CV_16UC3}}) {
+                                                                               {"8UC1", CV_8UC1},
+                                                                               {"mono16", CV_16UC1},
+                                                                               {"16UC1", CV_16UC1},
+                                                                               {"bgr8", CV_8UC3},
+                                                                               {"8UC3", CV_8UC3},
+                                                                               {"bgr16", CV_16UC3},
+                                                                               {"16UC3", CV_16UC3}}) {
     const cv::Mat pixels = noise(type);
     const auto message = imageMessage(pixels, encoding);
     const cv::Mat decoded = decodeImage(message, kTopic);
@@ -185,7 +185,9 @@ struct Calibration {
   cv::Size size{kWidth, kHeight};
   std::vector<std::string> warnings;
   StereoGeometry geometry() { return stereoGeometry(left, right, size, {}, warnings); }
-  std::string error() { return errorOf([&] { geometry(); }); }
+  std::string error() {
+    return errorOf([&] { geometry(); });
+  }
 };
 
 TEST(StereoGeometry, ParallelCameras) {

@@ -5,9 +5,13 @@
 #include <cstdint>
 #include <string>
 
-#include <opencv2/core.hpp>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
+#include <boost/make_shared.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "frame_worker.hpp"
 
 /// Messages for tests, written apart from src/ros/conversions.cpp.
 namespace fdp_stereo::test {
@@ -39,6 +43,50 @@ inline sensor_msgs::CameraInfo cameraInfo(int width, int height, double f, doubl
   info.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   info.P = {f, 0.0, cx, tx, 0.0, f, cy, 0.0, 0.0, 0.0, 1.0, 0.0};
   return info;
+}
+
+/// A textured plane facing the cameras: left(x) = right(x - disparity), CV_8UC1.
+struct PlanePair {
+  cv::Mat left;
+  cv::Mat right;
+};
+
+inline PlanePair planePair(int width, int height, int disparity, unsigned seed = 1) {
+  cv::Mat texture(height, width + disparity, CV_8UC1);
+  cv::RNG rng(seed);
+  rng.fill(texture, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(texture, texture, cv::Size(), 1.0);
+  cv::normalize(texture, texture, 0, 255, cv::NORM_MINMAX);
+  return {texture.colRange(0, width).clone(), texture.colRange(disparity, disparity + width).clone()};
+}
+
+/// The four messages of a pair, free to be changed.
+struct Messages {
+  sensor_msgs::Image left;
+  sensor_msgs::Image right;
+  sensor_msgs::CameraInfo left_info;
+  sensor_msgs::CameraInfo right_info;
+
+  void stamp(const ros::Time& time) {
+    left.header.stamp = right.header.stamp = left_info.header.stamp = right_info.header.stamp = time;
+  }
+  StereoFrame frame() const {
+    return {boost::make_shared<sensor_msgs::Image>(left), boost::make_shared<sensor_msgs::Image>(right),
+            boost::make_shared<sensor_msgs::CameraInfo>(left_info),
+            boost::make_shared<sensor_msgs::CameraInfo>(right_info), std::chrono::steady_clock::now()};
+  }
+};
+
+constexpr int kPlaneDisparity = 9;
+constexpr double kFocal = 200.0;
+constexpr double kBaseline = 0.1;
+
+/// A good pair, 160 x 120 px, of a plane at kFocal * kBaseline / kPlaneDisparity.
+inline Messages goodMessages(int width = 160, int height = 120) {
+  const PlanePair pair = planePair(width, height, kPlaneDisparity);
+  return {imageMessage(pair.left, "mono8"), imageMessage(pair.right, "mono8"),
+          cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, 0.0),
+          cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, -kFocal * kBaseline)};
 }
 
 }  // namespace fdp_stereo::test

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include <dynamic_reconfigure/config_tools.h>
+#include <gtest/gtest.h>
+#include <sensor_msgs/PointCloud2.h>
+
+#include "conversions.hpp"
+#include "fdp_stereo/io.hpp"
+#include "fdp_stereo/pipeline.hpp"
+#include "nodelet_graph.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+using dynamic_reconfigure::ConfigTools;
+using test::goodMessages;
+using test::Inbox;
+using test::LogLines;
+using test::Messages;
+using test::nextStamp;
+using test::NodeletGraph;
+using test::waitUntil;
+
+cv::Mat pixels(const sensor_msgs::Image& image) {
+  return cv::Mat(static_cast<int>(image.height), static_cast<int>(image.width), CV_32FC1,
+                 const_cast<std::uint8_t*>(image.data.data()), image.step);
+}
+
+/// The pair of sample/, as a colour camera publishes it.
+Messages sampleMessages() {
+  const std::string folder = FDP_STEREO_SOURCE_DIR "/sample/motorcycle/";
+  const cv::Mat left = readImage(folder + "left.png");
+  const cv::Mat right = readImage(folder + "right.png");
+  return {test::imageMessage(left, "bgr8"), test::imageMessage(right, "bgr8"),
+          test::cameraInfo(left.cols, left.rows, 994.978, 311.193, 254.877, 0.0),
+          test::cameraInfo(left.cols, left.rows, 994.978, 342.279, 254.877, -994.978 * 0.193001)};
+}
+
+TEST(DisparityNodelet, SamplePairEqualsTheCore) {
+  NodeletGraph graph("/sample", {{"disparity_range", 64}});
+  const Messages messages = sampleMessages();
+  const auto received = graph.process(messages, 60.0);
+  ASSERT_TRUE(received);
+
+  Pipeline pipeline(loadPreset("fast"));
+  const cv::Mat core = pipeline.run(decodeImage(messages.left, ""), decodeImage(messages.right, "")).disparity;
+  const cv::Mat got = pixels(received->image);
+  ASSERT_EQ(got.size(), core.size());
+  const double offset = 311.193 - 342.279;
+  int different = 0;
+  int valid = 0;
+  for (int y = 0; y < core.rows; ++y) {
+    for (int x = 0; x < core.cols; ++x) {
+      const float d = core.at<float>(y, x);
+      const bool seen = static_cast<float>(x) - d >= 0.0F;
+      const float expected = seen ? static_cast<float>(d - offset) : static_cast<float>(0.0 - offset) - 1.0F;
+      valid += seen ? 1 : 0;
+      different += got.at<float>(y, x) != expected ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(different, 0);
+  EXPECT_GT(valid, core.total() / 2);
+  EXPECT_FLOAT_EQ(received->f, 994.978F);
+  EXPECT_FLOAT_EQ(received->T, 0.193001F);
+}
+
+TEST(DisparityNodelet, SubscribesOnlyWhileSomebodyListens) {
+  NodeletGraph graph("/lazy");
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  graph.disparity().close();
+  EXPECT_TRUE(graph.camera().waitForSubscribers(0));
+  Inbox<sensor_msgs::Image> depth(graph.node(), "depth");
+  EXPECT_TRUE(graph.camera().waitForSubscribers(4));
+  depth.close();
+  EXPECT_TRUE(graph.camera().waitForSubscribers(0));
+  graph.disparity().open();
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, DepthAndConfidence) {
+  NodeletGraph graph("/outputs");
+  Inbox<sensor_msgs::Image> depth(graph.node(), "depth");
+  Inbox<sensor_msgs::CameraInfo> info(graph.node(), "depth/camera_info");
+  Inbox<sensor_msgs::Image> confidence(graph.node(), "confidence");
+  const auto connected = [&] {
+    return depth.publishers() == 1 && info.publishers() == 1 && confidence.publishers() == 1;
+  };
+  ASSERT_TRUE(waitUntil(connected));
+  const auto disparity = graph.process(goodMessages());
+  ASSERT_TRUE(disparity);
+  const auto same_stamp = [&](const auto& m) { return m.header.stamp == disparity->header.stamp; };
+  const auto depth_image = depth.wait(same_stamp);
+  ASSERT_TRUE(depth_image);
+  EXPECT_NEAR(pixels(*depth_image).at<float>(60, 80), test::kFocal * test::kBaseline / test::kPlaneDisparity, 0.05);
+  EXPECT_TRUE(info.wait(same_stamp));
+  const auto confidence_image = confidence.wait(same_stamp);
+  ASSERT_TRUE(confidence_image);
+  double lowest = 0.0;
+  double highest = 0.0;
+  cv::minMaxLoc(pixels(*confidence_image), &lowest, &highest);
+  EXPECT_GE(lowest, 0.0);
+  EXPECT_GT(highest, 0.0);
+  EXPECT_LE(highest, 1.0);
+}
+
+TEST(DisparityNodelet, ALiveEditTakesEffectAndIsWrittenBack) {
+  NodeletGraph graph("/live");
+  const auto before = graph.process(goodMessages());
+  ASSERT_TRUE(before);
+  EXPECT_FLOAT_EQ(before->max_disparity, 31.0F);
+  const auto answer = graph.edit([](auto& config) {
+    ConfigTools::appendParameter(config, "disparity_range", 20);
+    ConfigTools::appendParameter(config, "min_disparity", 99999);
+    ConfigTools::appendParameter(config, "semi_global_paths", 5);
+  });
+  int value = 0;
+  ASSERT_TRUE(ConfigTools::getParameter(answer, "min_disparity", value));
+  EXPECT_EQ(value, 1024) << "clamped";
+  ASSERT_TRUE(ConfigTools::getParameter(answer, "semi_global_paths", value));
+  EXPECT_EQ(value, 8) << "refused";
+  graph.edit([](auto& config) { ConfigTools::appendParameter(config, "min_disparity", 2); });
+  const auto after = graph.process(goodMessages());
+  ASSERT_TRUE(after);
+  EXPECT_FLOAT_EQ(after->min_disparity, 2.0F);
+  EXPECT_FLOAT_EQ(after->max_disparity, 21.0F);
+  ros::param::get(graph.nodeletName() + "/disparity_range", value);
+  EXPECT_EQ(value, 20);
+}
+
+TEST(DisparityNodelet, PresetThenParametersThenWhatWasUnknownIsSaid) {
+  LogLines log;
+  NodeletGraph graph("/preset", {{"preset", std::string("paper")}, {"semi_global_p2", 9.0}, {"not_there", 1}});
+  std::string type;
+  int cost = -1;
+  double p2 = 0.0;
+  ros::param::get(graph.nodeletName() + "/feature_matching_detector", cost);
+  EXPECT_EQ(cost, static_cast<int>(loadPreset("paper").feature_matching.detector));
+  ros::param::get(graph.nodeletName() + "/semi_global_p2", p2);
+  EXPECT_DOUBLE_EQ(p2, 9.0);
+  EXPECT_NE(log.wait({"not_there", "no effect"}), "");
+  EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, ABadPresetFallsBackAndSaysSo) {
+  LogLines log;
+  NodeletGraph graph("/bad_preset", {{"preset", std::string("fsat")}});
+  EXPECT_NE(log.wait({"~preset", "fsat", "using fast"}), "");
+  EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, ApproximateSynchronisation) {
+  NodeletGraph graph("/approximate", {{"approximate_sync", true}});
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  Messages messages = goodMessages();
+  stereo_msgs::DisparityImageConstPtr received;
+  for (int i = 0; i < 40 && !received; ++i) {
+    messages.stamp(nextStamp());
+    messages.right.header.stamp += ros::Duration(0.004);
+    messages.right_info.header.stamp += ros::Duration(0.004);
+    graph.camera().publish(messages);
+    received = graph.disparity().wait([](const auto&) { return true; }, 0.2);
+  }
+  ASSERT_TRUE(received);
+  const double offset_ms = std::fmod(received->header.stamp.toSec() * 1e3 + 0.5, 50.0);
+  EXPECT_LT(offset_ms, 2.0) << "the stamp is the left image's";
+}
+
+TEST(DisparityNodelet, SaysWhyNothingComesOut) {
+  LogLines log;
+  NodeletGraph graph("/silent", {{"watch_period", 0.4}});
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  Messages messages = goodMessages();
+  const auto send_apart = [&] {
+    messages.stamp(nextStamp());
+    messages.right.header.stamp += ros::Duration(0.007);
+    graph.camera().publish(messages);
+    return log.wait({"no synchronised pair", "/silent/right/image_rect", "7 ms", "~approximate_sync"}, 0.02) != "";
+  };
+  EXPECT_TRUE(waitUntil(send_apart, 10.0));
+  EXPECT_NE(log.wait({"no synchronised pair", "/silent/left/image_rect", "sends nothing"}, 10.0), "");
+}
+
+TEST(DisparityNodelet, ABagThatLoops) {
+  NodeletGraph graph("/loop");
+  ASSERT_TRUE(graph.process(goodMessages()));
+  Messages messages = goodMessages();
+  // Leftovers that never find their partner would fill an exact synchroniser for ever.
+  for (int i = 0; i < 20; ++i) {
+    messages.stamp(nextStamp());
+    messages.right.header.stamp += ros::Duration(0.001);
+    graph.camera().publish(messages);
+    ros::WallDuration(0.005).sleep();
+  }
+  graph.disparity().clear();
+  stereo_msgs::DisparityImageConstPtr received;
+  for (int i = 0; i < 40 && !received; ++i) {
+    messages.stamp(ros::Time(10.0) + ros::Duration(0.05 * i));
+    graph.camera().publish(messages);
+    received = graph.disparity().wait([](const auto& d) { return d.header.stamp < ros::Time(100.0); }, 0.3);
+  }
+  EXPECT_TRUE(received);
+}
+
+TEST(DisparityNodelet, MaxRateLeavesOutAndCounts) {
+  NodeletGraph graph("/rate", {{"max_rate", 5.0}});
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  Messages messages = goodMessages();
+  std::vector<ros::Time> stamps;
+  for (int i = 0; i < 20; ++i) {  // 20 Hz by the stamps
+    messages.stamp(nextStamp());
+    stamps.push_back(messages.left.header.stamp);
+    graph.camera().publish(messages);
+    ros::WallDuration(0.1).sleep();
+  }
+  EXPECT_TRUE(graph.disparity().wait([&](const auto& d) { return d.header.stamp == stamps[16]; }));
+  EXPECT_LE(graph.disparity().count(), 5U);
+}
+
+TEST(DisparityNodelet, MaxAgeDropsOldPairs) {
+  Inbox<diagnostic_msgs::DiagnosticArray> diagnostics(ros::NodeHandle(), "/diagnostics");
+  NodeletGraph graph("/age", {{"max_age", 0.5}});
+  ASSERT_TRUE(graph.camera().waitForSubscribers(4));
+  Messages messages = goodMessages();  // stamped long ago
+  const auto counted = [](const diagnostic_msgs::DiagnosticArray& array) {
+    for (const auto& status : array.status) {
+      if (status.name.find("age/disparity_nodelet") == std::string::npos) continue;
+      for (const auto& entry : status.values) {
+        if (entry.key == "Pairs dropped (max_age)" && entry.value != "0") return true;
+      }
+    }
+    return false;
+  };
+  messages.stamp(nextStamp());
+  graph.camera().publish(messages);
+  EXPECT_TRUE(diagnostics.wait(counted));
+  EXPECT_EQ(graph.disparity().count(), 0U);
+  messages.stamp(ros::Time::now());
+  const auto received = [&] {
+    messages.stamp(ros::Time::now());
+    graph.camera().publish(messages);
+    return graph.disparity().wait([](const auto&) { return true; }, 0.3) != nullptr;
+  };
+  EXPECT_TRUE(waitUntil(received));
+}
+
+}  // namespace
+}  // namespace fdp_stereo
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "disparity_nodelet_test");
+  ros::NodeHandle node;
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame_processor.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "messages.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+using test::goodMessages;
+using test::imageMessage;
+using test::kBaseline;
+using test::kFocal;
+using test::kPlaneDisparity;
+using test::Messages;
+
+const WantedOutputs kAll{true, true, true};
+
+NodeSettings settings() {
+  NodeSettings s;
+  s.pipeline = loadPreset(kDefaultPreset);
+  s.pipeline.search = {0, 32};
+  return s;
+}
+
+cv::Mat pixels(const sensor_msgs::Image& image) {
+  return cv::Mat(static_cast<int>(image.height), static_cast<int>(image.width), CV_32FC1,
+                 const_cast<std::uint8_t*>(image.data.data()), image.step);
+}
+
+FrameOutput run(const Messages& messages, const NodeSettings& s = settings()) {
+  FrameProcessor processor({});
+  return processor.process(messages.frame(), s, kAll);
+}
+
+/// Share of the pixels that lie within 0.5 px of `disparity`.
+double shareAt(const FrameOutput& output, double disparity) {
+  const cv::Mat map = pixels(output.disparity->image);
+  return cv::countNonZero(cv::abs(map - disparity) < 0.5) / static_cast<double>(map.total());
+}
+
+/// The core's result for the same pixels, unseen ones left out, in published units.
+cv::Mat coreResult(const cv::Mat& left, const cv::Mat& right, float invalid) {
+  Pipeline pipeline(settings().pipeline);
+  cv::Mat map = pipeline.run(left, right).disparity;
+  for (int y = 0; y < map.rows; ++y) {
+    for (int x = 0; x < map.cols; ++x) {
+      float& d = map.at<float>(y, x);
+      if (!(static_cast<float>(x) - d >= 0.0F)) d = invalid;
+    }
+  }
+  return map;
+}
+
+void expectEqualToCore(const FrameOutput& output, const cv::Mat& left, const cv::Mat& right, const std::string& name) {
+  const cv::Mat expected = coreResult(left, right, -1.0F);
+  EXPECT_EQ(cv::norm(pixels(output.disparity->image), expected, cv::NORM_INF), 0.0) << name;
+}
+
+TEST(FrameProcessor, PlaneComesOutWithItsDepth) {
+  const FrameOutput output = run(goodMessages());
+  EXPECT_GT(shareAt(output, kPlaneDisparity), 0.85);
+  const cv::Mat depth = pixels(*output.depth);
+  EXPECT_NEAR(depth.at<float>(60, 80), kFocal * kBaseline / kPlaneDisparity, 0.05);
+  EXPECT_EQ(output.depth_info->P, goodMessages().left_info.P);
+  EXPECT_GT(pixels(*output.confidence).at<float>(60, 80), 0.0F);
+  EXPECT_GT(output.report.valid_share, 0.85);
+  EXPECT_TRUE(output.report.warnings.empty());
+}
+
+TEST(FrameProcessor, WhatNobodyWantsIsNotMade) {
+  FrameProcessor processor({});
+  const FrameOutput output = processor.process(goodMessages().frame(), settings(), {});
+  EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence);
+  EXPECT_GT(output.report.valid_share, 0.85);
+}
+
+TEST(FrameProcessor, EncodingsGiveTheCoresPixels) {
+  const auto pair = test::planePair(160, 120, kPlaneDisparity);
+  Messages messages = goodMessages();
+  const auto check = [&](const std::string& name, const cv::Mat& left, const cv::Mat& right) {
+    expectEqualToCore(run(messages), left, right, name);
+  };
+  messages.left = imageMessage(pair.left, "mono8", 7);
+  check("padded", pair.left, pair.right);
+
+  cv::Mat left16;
+  cv::Mat right16;
+  pair.left.convertTo(left16, CV_16U, 16.0, 3.0);  // 12 bits
+  pair.right.convertTo(right16, CV_16U, 16.0, 3.0);
+  messages.left = imageMessage(left16, "mono16");
+  messages.right = imageMessage(right16, "mono16");
+  check("12 bit", left16, right16);
+  for (auto* image : {&messages.left, &messages.right}) {
+    for (std::size_t i = 0; i < image->data.size(); i += 2) std::swap(image->data[i], image->data[i + 1]);
+    image->is_bigendian = 1;
+  }
+  check("big-endian", left16, right16);
+
+  cv::Mat left_colour;
+  cv::Mat right_colour;
+  cv::applyColorMap(pair.left, left_colour, cv::COLORMAP_JET);
+  cv::applyColorMap(pair.right, right_colour, cv::COLORMAP_JET);
+  messages.left = imageMessage(left_colour, "bgr8");
+  messages.right = imageMessage(right_colour, "bgr8");
+  check("bgr8", left_colour, right_colour);
+  cv::Mat left_rgb;
+  cv::Mat right_rgb;
+  cv::cvtColor(left_colour, left_rgb, cv::COLOR_BGR2RGB);
+  cv::cvtColor(right_colour, right_rgb, cv::COLOR_BGR2RGB);
+  messages.left = imageMessage(left_rgb, "rgb8");
+  messages.right = imageMessage(right_rgb, "rgb8");
+  check("rgb8", left_colour, right_colour);
+}
+
+TEST(FrameProcessor, OneGreyAndOneColourCamera) {
+  Messages messages = goodMessages();
+  cv::Mat colour;
+  cv::cvtColor(decodeImage(messages.right, ""), colour, cv::COLOR_GRAY2BGR);
+  messages.right = imageMessage(colour, "bgr8");
+  const FrameOutput output = run(messages);
+  EXPECT_GT(shareAt(output, kPlaneDisparity), 0.85);
+  ASSERT_EQ(output.report.warnings.size(), 1U);
+}
+
+TEST(FrameProcessor, VergedCameras) {
+  Messages messages = goodMessages();
+  messages.right_info.P[2] += 20.0;  // published d = 9 + 20
+  const FrameOutput output = run(messages);
+  EXPECT_GT(shareAt(output, kPlaneDisparity + 20), 0.85);
+  EXPECT_FLOAT_EQ(output.disparity->min_disparity, 20.0F);
+  EXPECT_NEAR(pixels(*output.depth).at<float>(60, 80), kFocal * kBaseline / (kPlaneDisparity + 20), 0.02);
+}
+
+TEST(FrameProcessor, BinningKeepsTheDistance) {
+  Messages messages = goodMessages();
+  for (auto* info : {&messages.left_info, &messages.right_info}) {
+    info->width *= 2;
+    info->height *= 2;
+    info->binning_x = info->binning_y = 2;
+    for (const std::size_t i : {0, 2, 3, 5, 6}) info->P[i] *= 2.0;
+  }
+  const FrameOutput output = run(messages);
+  EXPECT_FLOAT_EQ(output.disparity->f, kFocal);
+  EXPECT_NEAR(pixels(*output.depth).at<float>(60, 80), kFocal * kBaseline / kPlaneDisparity, 0.05);
+}
+
+/// Consumers drop the smallest value of a fully dense map.
+TEST(FrameProcessor, FilledMapsKeepTheUnseenBorderInvalid) {
+  NodeSettings s = settings();
+  s.pipeline.hole_filling.enabled = true;
+  const FrameOutput output = run(goodMessages(), s);
+  const cv::Mat map = pixels(output.disparity->image);
+  EXPECT_FLOAT_EQ(map.at<float>(60, 0), -1.0F);
+  EXPECT_FLOAT_EQ(map.at<float>(60, 80), pixels(run(goodMessages()).disparity->image).at<float>(60, 80));
+  EXPECT_GT(output.report.valid_share, 0.9);
+}
+
+TEST(FrameProcessor, StepOfTheRefinement) {
+  NodeSettings s = settings();
+  EXPECT_FLOAT_EQ(run(goodMessages(), s).disparity->delta_d, 1.0F / 16.0F);
+  s.pipeline.semi_global.subpixel = SubpixelFit::kNone;
+  EXPECT_FLOAT_EQ(run(goodMessages(), s).disparity->delta_d, 1.0F);
+}
+
+TEST(FrameProcessor, NewParametersTakeEffectWithTheNextFrame) {
+  FrameProcessor processor({});
+  NodeSettings s = settings();
+  processor.process(goodMessages().frame(), s, kAll);
+  s.pipeline.search.count = 24;
+  ++s.revision;
+  EXPECT_FLOAT_EQ(processor.process(goodMessages().frame(), s, kAll).disparity->max_disparity, 23.0F);
+}
+
+TEST(FrameProcessor, ACancelledFrameGivesNothing) {
+  FrameProcessor processor({});
+  const std::atomic<bool> cancel{true};
+  EXPECT_FALSE(processor.process(goodMessages().frame(), settings(), kAll, &cancel).disparity);
+}
+
+TEST(FrameProcessor, RefusesWhatCannotBeMatched) {
+  const auto error = [](const Messages& messages, const NodeSettings& s) -> std::string {
+    try {
+      run(messages, s);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  Messages messages = goodMessages();
+  messages.right = imageMessage(cv::Mat(119, 160, CV_8UC1, cv::Scalar(0)), "mono8");
+  EXPECT_NE(error(messages, settings()).find("160 x 119"), std::string::npos);
+  messages = goodMessages();
+  messages.left = imageMessage(cv::Mat(120, 160, CV_16UC1, cv::Scalar(0)), "mono16");
+  EXPECT_NE(error(messages, settings()).find("16 bit"), std::string::npos);
+  NodeSettings s = settings();
+  s.pipeline.search.min = 160;
+  EXPECT_NE(error(goodMessages(), s).find("min_disparity = 160"), std::string::npos);
+  s.pipeline.search = {-1000, 800};
+  EXPECT_NE(error(goodMessages(), s).find("min_disparity = -1000"), std::string::npos);
+  s.pipeline.search = {0, 1000};
+  const auto wide = run(goodMessages(), s);
+  ASSERT_EQ(wide.report.warnings.size(), 1U);
+  EXPECT_NE(wide.report.warnings[0].find("disparity_range = 1000"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fdp_stereo

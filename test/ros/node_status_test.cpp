@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "node_status.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fdp_stereo {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+class Status : public ::testing::Test {
+ protected:
+  Status() {
+    before_.subscribed = true;
+    const char* topics[] = {"/cam/left/image_rect", "/cam/left/camera_info", "/cam/right/image_rect",
+                            "/cam/right/camera_info"};
+    for (std::size_t i = 0; i < 4; ++i) before_.inputs[i] = {topics[i], 100, 1, ros::Time(50.0)};
+    now_ = before_;
+    for (auto& input : now_.inputs) input.received = 250;
+  }
+  std::string silence() const { return describeSilence(now_, before_, 15.0); }
+  std::string summary() const {
+    diagnostic_updater::DiagnosticStatusWrapper diagnostics;
+    describeStatus(now_, before_, 15.0, diagnostics);
+    return diagnostics.message;
+  }
+  std::string value(const std::string& key) const {
+    diagnostic_updater::DiagnosticStatusWrapper diagnostics;
+    describeStatus(now_, before_, 15.0, diagnostics);
+    for (const auto& entry : diagnostics.values) {
+      if (entry.key == key) return entry.value;
+    }
+    return "no such key: " + key;
+  }
+  NodeStatus before_, now_;
+};
+
+void expectContains(const std::string& text, const std::vector<std::string>& parts) {
+  for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' in: " << text;
+}
+
+TEST_F(Status, NoSilenceWhileFramesComeOut) {
+  now_.pairs = now_.processed = 1;
+  EXPECT_EQ(silence(), "");
+}
+
+TEST_F(Status, NoSilenceWhereNobodyListens) {
+  now_.subscribed = false;
+  EXPECT_EQ(silence(), "");
+  now_.subscribed = true;
+  before_.subscribed = false;
+  EXPECT_EQ(silence(), "") << "only just subscribed";
+}
+
+TEST_F(Status, SilenceOfATopicWithoutPublisher) {
+  now_.inputs[3].received = 100;
+  now_.inputs[3].publishers = 0;
+  expectContains(silence(), {"15 s", "/cam/left/image_rect 150", "/cam/right/camera_info 0",
+                             "/cam/right/camera_info has no publisher", "rostopic list"});
+}
+
+TEST_F(Status, SilenceOfATopicThatSendsNothing) {
+  now_.inputs[2].received = 100;
+  expectContains(silence(), {"/cam/right/image_rect has a publisher that sends nothing", "rostopic hz"});
+}
+
+TEST_F(Status, SilenceOfStampsThatDoNotMeet) {
+  now_.inputs[2].stamp = now_.inputs[3].stamp = ros::Time(50.0125);
+  expectContains(silence(), {"/cam/left/image_rect and /cam/right/image_rect", "12.5 ms", "~approximate_sync"});
+  now_.approximate_sync = true;
+  expectContains(silence(), {"12.5 ms", "~approximate_sync_tolerance"});
+}
+
+TEST_F(Status, SilenceOfPairsThatCannotBeUsed) {
+  now_.pairs = 150;
+  now_.failed = 150;
+  now_.last_error = "/cam/right/camera_info: P is all 0";
+  expectContains(silence(), {"150 pairs", "none could be used", "P is all 0"});
+}
+
+TEST_F(Status, NoSilenceWhileALongFrameRuns) {
+  now_.pairs = 1;
+  EXPECT_EQ(silence(), "");
+}
+
+TEST_F(Status, Summaries) {
+  EXPECT_EQ(summary(), "No synchronised pair yet");
+  now_.pairs = now_.processed = 30;
+  EXPECT_EQ(summary(), "Running");
+  now_.frame.warnings = {"fx differs", "rows are off"};
+  EXPECT_EQ(summary(), "fx differs; rows are off");
+  now_.error_is_current = true;
+  now_.last_error = "encoding '32FC1'";
+  EXPECT_EQ(summary(), "encoding '32FC1'");
+  now_.subscribed = false;
+  EXPECT_EQ(summary(), "Idle: no output has a subscriber");
+  now_.master_lost = true;
+  EXPECT_EQ(summary(), "The ROS master does not answer");
+}
+
+TEST_F(Status, Values) {
+  now_.processed = 30;
+  now_.dropped = 7;
+  now_.latency_ms = 41.26;
+  now_.revision = 3;
+  now_.frame.times = {{"optimizer", 20.04}};
+  EXPECT_EQ(value("/cam/left/image_rect"), "250 received, 10.0 Hz");
+  EXPECT_EQ(value("Output rate (Hz)"), "2.00");
+  EXPECT_EQ(value("Pairs dropped (overload)"), "7");
+  EXPECT_EQ(value("Latency (ms)"), "41.3");
+  EXPECT_EQ(value("Stage optimizer (ms)"), "20.0");
+  EXPECT_EQ(value("Parameter revision"), "3");
+}
+
+TEST(LogThrottle, SaysATextOnceInAWhile) {
+  LogThrottle throttle(std::chrono::seconds(10), 3);
+  const LogThrottle::Clock::time_point start{};
+  EXPECT_TRUE(throttle.allow("a", start));
+  EXPECT_FALSE(throttle.allow("a", start + std::chrono::seconds(9)));
+  EXPECT_TRUE(throttle.allow("b", start + std::chrono::seconds(9)));
+  EXPECT_TRUE(throttle.allow("a", start + std::chrono::seconds(10)));
+}
+
+TEST(LogThrottle, BoundsTextsThatAlwaysDiffer) {
+  LogThrottle throttle(std::chrono::seconds(10), 3);
+  const LogThrottle::Clock::time_point start{};
+  int lines = 0;
+  for (int i = 0; i < 1000; ++i) lines += throttle.allow(std::to_string(i), start) ? 1 : 0;
+  EXPECT_EQ(lines, 3);
+  EXPECT_TRUE(throttle.allow("later", start + std::chrono::seconds(10)));
+}
+
+}  // namespace
+}  // namespace fdp_stereo

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "params_ros.hpp"
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include <dynamic_reconfigure/config_tools.h>
+#include <fdp_stereo/DisparityConfig.h>
+#include <gtest/gtest.h>
+
+namespace fdp_stereo {
+namespace {
+
+using dynamic_reconfigure::Config;
+using dynamic_reconfigure::ConfigTools;
+
+NodeSettings initial() {
+  NodeSettings settings;
+  settings.pipeline = loadPreset(kDefaultPreset);
+  return settings;
+}
+
+TEST(ApplyConfig, TakesValuesOfEveryKind) {
+  Config edits;
+  ConfigTools::appendParameter(edits, "min_disparity", -8);
+  ConfigTools::appendParameter(edits, "hole_filling_enabled", true);
+  ConfigTools::appendParameter(edits, "semi_global_p2", 6.5);
+  ConfigTools::appendParameter(edits, "optimizer_type", 0);
+  ConfigTools::appendParameter(edits, "max_rate", 7.5);
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_EQ(settings.pipeline.search.min, -8);
+  EXPECT_TRUE(settings.pipeline.hole_filling.enabled);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 6.5);
+  EXPECT_EQ(settings.pipeline.optimizer, OptimizerType::kWinnerTakesAll);
+  EXPECT_DOUBLE_EQ(settings.node.max_rate_hz, 7.5);
+  EXPECT_EQ(settings.revision, 1U);
+}
+
+TEST(ApplyConfig, AnEditThatChangesNothingIsNoRevision) {
+  Config edits;
+  toConfig(initial(), edits);
+  std::vector<std::string> messages;
+  EXPECT_EQ(applyConfig(edits, initial(), messages).revision, 0U);
+  EXPECT_TRUE(messages.empty());
+}
+
+TEST(ApplyConfig, ClampsAndSaysSo) {
+  Config edits;
+  ConfigTools::appendParameter(edits, "disparity_range", 99999);
+  ConfigTools::appendParameter(edits, "max_age", -1.0);
+  ConfigTools::appendParameter(edits, "optimizer_type", 77);
+  ConfigTools::appendParameter(edits, "semi_global_p1", std::numeric_limits<double>::quiet_NaN());
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_EQ(settings.pipeline.search.count, 1024);
+  EXPECT_DOUBLE_EQ(settings.node.max_age_s, 0.0);
+  EXPECT_EQ(settings.pipeline.optimizer, OptimizerType::kLocalExpansion);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, initial().pipeline.semi_global.p1);
+  ASSERT_EQ(messages.size(), 4U);
+  EXPECT_NE(messages[0].find("disparity_range = 99999"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("1024"), std::string::npos) << messages[0];
+}
+
+TEST(ApplyConfig, WhatDoesNotGoTogetherStaysAsItWas) {
+  Config edits;
+  ConfigTools::appendParameter(edits, "matching_cost_census_width", 8);
+  ConfigTools::appendParameter(edits, "disparity_range", 32);
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_EQ(settings.pipeline.matching_cost.census.window_width, 9);
+  EXPECT_EQ(settings.pipeline.search.count, 32) << "the good edit beside it is taken";
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("matching_cost_census_width stays 9"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("odd"), std::string::npos) << messages[0];
+}
+
+TEST(ApplyConfig, OrderOfEditsThatNeedEachOtherDoesNotMatter) {
+  Config edits;  // p2 must not be below p1
+  ConfigTools::appendParameter(edits, "semi_global_p1", 50.0);
+  ConfigTools::appendParameter(edits, "semi_global_p2", 60.0);
+  ConfigTools::appendParameter(edits, "semi_global_paths", 7);
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, 50.0);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 60.0);
+  EXPECT_EQ(settings.pipeline.semi_global.paths, 8);
+  EXPECT_EQ(messages.size(), 1U);
+}
+
+TEST(ApplyConfig, DepthLimitsGoTogether) {
+  Config edits;
+  ConfigTools::appendParameter(edits, "min_depth", 5.0);
+  ConfigTools::appendParameter(edits, "max_depth", 2.0);
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_NO_THROW(validate(settings));
+  EXPECT_EQ(messages.size(), 1U);
+}
+
+TEST(ApplyConfig, NamesWhatItDoesNotKnow) {
+  Config edits;
+  ConfigTools::appendParameter(edits, "correlation_window_size", 15);
+  ConfigTools::appendParameter(edits, "preset", std::string("fast"));
+  std::vector<std::string> messages;
+  EXPECT_EQ(applyConfig(edits, initial(), messages).revision, 0U);
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_NE(messages[0].find("correlation_window_size"), std::string::npos);
+}
+
+TEST(ApplyRosparam, FlatNamesMapsWordsAndNumbers) {
+  XmlRpc::XmlRpcValue values;
+  values["disparity_range"] = 48;
+  values["semi_global_p2"] = 5;  // a whole number for a real one
+  values["optimizer_type"] = std::string("winner_takes_all");
+  values["hole_filling"]["enabled"] = true;
+  values["matching_cost"]["type"] = std::string("ad_census");
+  values["queue_size"] = 3;
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyRosparam(values, initial(), {"queue_size"}, messages);
+  EXPECT_TRUE(messages.empty()) << messages.front();
+  EXPECT_EQ(settings.pipeline.search.count, 48);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 5.0);
+  EXPECT_EQ(settings.pipeline.optimizer, OptimizerType::kWinnerTakesAll);
+  EXPECT_TRUE(settings.pipeline.hole_filling.enabled);
+  EXPECT_EQ(settings.pipeline.matching_cost.type, MatchingCostType::kAdCensus);
+}
+
+TEST(ApplyRosparam, KeepsGoodValuesBesideBadOnes) {
+  XmlRpc::XmlRpcValue values;
+  values["disparity_range"] = std::string("abc");
+  values["min_disparity"] = 4;
+  values["speckle_size"][0] = 1;  // a list
+  values["hole_filling"]["enabeld"] = true;
+  values["unknown"] = 1;
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyRosparam(values, initial(), {}, messages);
+  EXPECT_EQ(settings.pipeline.search.count, initial().pipeline.search.count);
+  EXPECT_EQ(settings.pipeline.search.min, 4);
+  ASSERT_EQ(messages.size(), 4U);
+}
+
+TEST(ApplyRosparam, AnythingButAMapIsNothing) {
+  std::vector<std::string> messages;
+  EXPECT_EQ(applyRosparam(XmlRpc::XmlRpcValue(7), initial(), {}, messages).revision, 0U);
+}
+
+TEST(Parameters, ADumpLoadsAgain) {
+  NodeSettings tuned = initial();
+  tuned.pipeline.search = {-16, 96};
+  tuned.pipeline.matching_cost.type = MatchingCostType::kBirchfieldTomasi;
+  tuned.node.max_depth_m = 12.5;
+  Config dump;
+  toConfig(tuned, dump);
+  std::vector<std::string> messages;
+  const NodeSettings loaded = applyConfig(dump, initial(), messages);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_EQ(toYaml(loaded.pipeline), toYaml(tuned.pipeline));
+  EXPECT_DOUBLE_EQ(loaded.node.max_depth_m, 12.5);
+}
+
+TEST(Parameters, RosNamesAreUniqueAndNamesOfStereoImageProcAreKept) {
+  NodeSettings settings;
+  std::set<std::string> names;
+  for (const auto& ref : liveParamList(settings)) EXPECT_TRUE(names.insert(ref.ros_name).second) << ref.ros_name;
+  for (const char* name :
+       {"min_disparity", "disparity_range", "uniqueness_ratio", "speckle_size", "speckle_range", "disp12MaxDiff"}) {
+    EXPECT_EQ(names.count(name), 1U) << name;
+  }
+}
+
+/// The generated class, as rqt_reconfigure sees it, against the list.
+TEST(CfgFile, DefaultsAndRangesAreThoseOfTheList) {
+  NodeSettings settings = initial();
+  const auto description = DisparityConfig::__getDescriptionMessage__();
+  Config generated = description.dflt;
+  Config expected = description.dflt;
+  toConfig(settings, expected);
+  EXPECT_EQ(generated.ints.size() + generated.doubles.size() + generated.bools.size(), liveParamList(settings).size());
+  EXPECT_EQ(expected.ints.size(), generated.ints.size());
+  for (const auto& ref : liveParamList(settings)) {
+    double real = 0.0;
+    int whole = 0;
+    if (std::holds_alternative<double*>(ref.value)) {
+      ASSERT_TRUE(ConfigTools::getParameter(generated, ref.ros_name, real)) << ref.ros_name;
+      EXPECT_DOUBLE_EQ(real, *std::get<double*>(ref.value)) << ref.ros_name;
+      EXPECT_TRUE(ConfigTools::getParameter(description.min, ref.ros_name, real));
+      EXPECT_DOUBLE_EQ(real, ref.min) << ref.ros_name;
+      EXPECT_TRUE(ConfigTools::getParameter(description.max, ref.ros_name, real));
+      EXPECT_DOUBLE_EQ(real, ref.max) << ref.ros_name;
+    } else if (!std::holds_alternative<bool*>(ref.value)) {
+      ASSERT_TRUE(ConfigTools::getParameter(generated, ref.ros_name, whole)) << ref.ros_name;
+      EXPECT_TRUE(ConfigTools::getParameter(description.min, ref.ros_name, whole));
+      EXPECT_EQ(whole, static_cast<int>(ref.min)) << ref.ros_name;
+      EXPECT_TRUE(ConfigTools::getParameter(description.max, ref.ros_name, whole));
+      EXPECT_EQ(whole, static_cast<int>(ref.max)) << ref.ros_name;
+    }
+  }
+}
+
+TEST(CfgFile, IsWhatTheListSays) {
+  std::ifstream file(FDP_STEREO_SOURCE_DIR "/cfg/Disparity.cfg");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), reconfigureFile()) << "a parameter changed: build the target update_cfg";
+}
+
+}  // namespace
+}  // namespace fdp_stereo
