@@ -1,47 +1,49 @@
-#!/bin/bash
+#!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs what is missing, builds, and plays a recording of a stereo camera through the graph, headless.
-# usage: scripts/demo.sh [BAG]   (default: the sample recording)
-# Leaves demo_output/: disparity.png (left image beside the disparity), output.bag, summary.txt.
+# demo.sh [BAG]: installs what is missing, builds, and plays a recording of a stereo camera (the sample by default)
+# through rectification, disparity, depth and points, without a screen.
+# Leaves demo_output/: disparity.png (left image beside the disparity), output.bag, summary.txt, roslaunch.log.
 # Ends with 0 only if disparity images arrived.
 set -euo pipefail
-cd "$(dirname "$0")/.."
-export PATH=/usr/bin:/bin:/usr/sbin:/sbin
-
+# shellcheck source=scripts/environment.sh
+. "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
+bag="${1:+$(realpath "$1")}"
+cd "$FDP_STEREO_ROOT"
 scripts/setup.sh
 scripts/build.sh
-set +u
+set +u # catkin's file reads variables that may be unset
+# shellcheck source=/dev/null
 . build/devel/setup.bash
 set -u
 
-output=$PWD/demo_output
-bag=$(realpath "${1:-build/devel/share/fdp_stereo/sample/motorcycle.bag}")
+bag="${bag:-$FDP_STEREO_ROOT/build/devel/share/fdp_stereo/sample/motorcycle.bag}"
+output="$FDP_STEREO_ROOT/demo_output"
+port="${FDP_STEREO_DEMO_PORT:-11411}"
 rm -rf "$output"
 mkdir -p "$output"
-export ROS_HOME=$output/ros_home
-export ROS_MASTER_URI=http://localhost:${FDP_STEREO_DEMO_PORT:-11411}
+export ROS_HOME="$output/ros_home"
+export ROS_MASTER_URI="http://localhost:$port"
 
-color=true
-# A grey camera has no colour to use.
-if rosbag info -y -k topics "$bag" >/dev/null && ! /usr/bin/python3 - "$bag" <<'PYTHON'
+is_color() {
+  python3 - "$1" <<'PYTHON'
 import sys
 import rosbag
-message = next(rosbag.Bag(sys.argv[1]).read_messages(topics=["/stereo/left/image_raw"])).message
-sys.exit(message.encoding in ("mono8", "mono16"))
-PYTHON
-then
-  color=false
-fi
 
-status=0
-roslaunch -p "${ROS_MASTER_URI##*:}" fdp_stereo demo.launch bag:="$bag" output:="$output" color:=$color \
-  </dev/null >"$output/roslaunch.log" 2>&1 || status=$?
+for _, message, _ in rosbag.Bag(sys.argv[1]).read_messages(topics=["/stereo/left/image_raw"]):
+    sys.exit(0 if message.encoding not in ("mono8", "mono16") else 1)
+sys.exit(sys.argv[1] + ": no images on /stereo/left/image_raw")
+PYTHON
+}
+if is_color "$bag"; then color=true; else color=false; fi
+
+roslaunch -p "$port" fdp_stereo demo.launch bag:="$bag" output:="$output" color:="$color" \
+  </dev/null >"$output/roslaunch.log" 2>&1 || true
 
 if [ ! -s "$output/summary.txt" ]; then
-  echo "demo: no summary was written; the end of $output/roslaunch.log:" >&2
-  tail -20 "$output/roslaunch.log" >&2
+  echo "demo.sh: no summary came out; the end of $output/roslaunch.log:" >&2
+  tail -n 20 "$output/roslaunch.log" >&2
   exit 1
 fi
 cat "$output/summary.txt"
