@@ -86,7 +86,7 @@ void smoothDisparity(cv::Mat& disparity, const cv::Mat& left, const DisparitySmo
   const Smoother smoother{planarRows(left), left.cols, left.rows, left.channels(), params.radius,
                           1.0F / (difference * difference), 1.0F / (gamma * gamma)};
   cv::Mat first = disparity.clone(), second(disparity.size(), CV_32FC1);
-  first.setTo(kFar, disparity != disparity);
+  first.setTo(kFar, ~(disparity == disparity));  // OpenCV finds no NaN by != where it compares vectors
   smoother.run(first, second, true);
   smoother.run(second, first, false);
   first.copyTo(disparity, first < kFar);

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/pipeline.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "fdp_stereo/evaluation.hpp"
+#include "fdp_stereo/scene.hpp"
+#include "reference/post_processing_reference.hpp"
+#include "reference/random_images.hpp"
+#include "simd.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+const reference::RenderedPair& rendered() {
+  static const reference::RenderedPair pair = reference::renderPair(120, 200, 6, 15, 5);
+  return pair;
+}
+
+PipelineParams paramsOf(const std::string& preset) {
+  PipelineParams params = loadPreset(preset);
+  params.search = {0, 32};
+  return params;
+}
+
+class EveryPreset : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Pipeline, EveryPreset, testing::Values("fast", "paper"));
+
+TEST_P(EveryPreset, FindsTheRenderedDisparities) {
+  PipelineParams params = paramsOf(GetParam());
+  params.hole_filling.enabled = true;
+  const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right);
+  const DisparityErrors errors = evaluateDisparity(result.disparity, rendered().truth, rendered().visible);
+  EXPECT_EQ(errors.density, 100.0);
+  EXPECT_LT(errors.bad[3], 4.0) << "share off by more than 1 px";
+  EXPECT_LT(errors.bad[1], 8.0) << "share off by more than a quarter";
+}
+
+TEST_P(EveryPreset, ThreadsGiveTheSameBits) {
+  PipelineParams params = paramsOf(GetParam());
+  params.threads = 1;
+  const PipelineResult expected = Pipeline(params).run(rendered().left, rendered().right);
+  for (const int threads : {2, 4}) {
+    params.threads = threads;
+    const PipelineResult actual = Pipeline(params).run(rendered().left, rendered().right);
+    EXPECT_EQ(reference::differingPixels(actual.disparity, expected.disparity), 0);
+    EXPECT_EQ(reference::differingPixels(actual.confidence, expected.confidence), 0);
+  }
+}
+
+TEST_P(EveryPreset, InstructionSetsGiveTheSameBits) {
+  limitSimdLevel(SimdLevel::kBaseline);
+  const PipelineResult expected = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
+  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    limitSimdLevel(level);
+    const PipelineResult actual = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
+    EXPECT_EQ(reference::differingPixels(actual.disparity, expected.disparity), 0);
+  }
+}
+
+TEST_P(EveryPreset, ASecondFrameGivesTheSameAsTheFirst) {
+  Pipeline pipeline(paramsOf(GetParam()));
+  const PipelineResult first = pipeline.run(rendered().left, rendered().right);
+  pipeline.run(reference::texture(50, 70, CV_8UC1, 1), reference::texture(50, 70, CV_8UC1, 2));
+  const PipelineResult again = pipeline.run(rendered().left, rendered().right);
+  EXPECT_EQ(reference::differingPixels(again.disparity, first.disparity), 0);
+}
+
+TEST_P(EveryPreset, NeverModifiesTheImages) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    const reference::RenderedPair pair = reference::renderPair(60, 90, 4, 9, 2, type);
+    const cv::Mat left = pair.left.clone();
+    const cv::Mat right = pair.right.clone();
+    Pipeline(paramsOf(GetParam())).run(pair.left, pair.right);
+    EXPECT_EQ(cv::norm(left, pair.left, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(right, pair.right, cv::NORM_INF), 0.0);
+  }
+}
+
+TEST_P(EveryPreset, ConfidenceIsBetween0And1AndZeroWithoutAnswer) {
+  PipelineParams params = paramsOf(GetParam());
+  params.left_right_check.enabled = true;
+  const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right);
+  int empty = 0;
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const float confidence = result.confidence.at<float>(y, x);
+      ASSERT_GE(confidence, 0.0F);
+      ASSERT_LE(confidence, 1.0F);
+      if (!std::isnan(result.disparity.at<float>(y, x))) continue;
+      ++empty;
+      ASSERT_EQ(confidence, 0.0F) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(empty, 100);
+}
+
+TEST_P(EveryPreset, SurvivesImagesWithoutTexture) {
+  for (const int size : {1, 2, 5, 33}) {
+    const cv::Mat grey(size, size, CV_8UC1, cv::Scalar(128));
+    const PipelineResult result = Pipeline(paramsOf(GetParam())).run(grey, grey);
+    EXPECT_EQ(result.disparity.size(), grey.size());
+    EXPECT_TRUE(result.matches.empty());
+  }
+}
+
+TEST_P(EveryPreset, Takes16BitPairsAndNegativeRanges) {
+  cv::Mat left;
+  cv::Mat right;
+  rendered().left.convertTo(left, CV_16U, 16.0);
+  rendered().right.convertTo(right, CV_16U, 16.0);
+  PipelineParams params = paramsOf(GetParam());
+  params.search = {-24, 32};
+  const PipelineResult result = Pipeline(params).run(left, right);
+  EXPECT_GT(cv::countNonZero(cv::abs(result.disparity - 6.0F) < 0.5F), 120 * 200 / 3);
+}
+
+TEST_P(EveryPreset, NamesItsStagesInOrder) {
+  const PipelineResult result = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
+  std::vector<std::string> stages;
+  for (const StageTime& time : result.times) {
+    stages.push_back(time.stage);
+    EXPECT_GE(time.ms, 0.0);
+  }
+  const auto position = [&](const char* name) {
+    return std::find(stages.begin(), stages.end(), name) - stages.begin();
+  };
+  EXPECT_LT(position("feature_matching"), position("row_alignment"));
+  EXPECT_LT(position("row_alignment"), position("optimizer"));
+  EXPECT_LT(position("optimizer"), static_cast<std::ptrdiff_t>(stages.size()));
+}
+
+TEST(Pipeline, MirroredAndSwappedViewsExchangeTheirAnswers) {
+  // The mirrored right image against the mirrored left one is a pair too, seen from the other camera.
+  PipelineParams params = paramsOf("fast");
+  params.row_alignment.enabled = false;
+  cv::Mat left;
+  cv::Mat right;
+  cv::flip(rendered().right, left, 1);
+  cv::flip(rendered().left, right, 1);
+  const PipelineResult result = Pipeline(params).run(left, right);
+  cv::Mat back;
+  cv::flip(result.disparity, back, 1);
+  // The square is 15 px further left in the right view.
+  EXPECT_NEAR(back.at<float>(60, 100 - 15), 15.0F, 0.3F);
+  EXPECT_NEAR(back.at<float>(10, 100), 6.0F, 0.3F);
+}
+
+TEST(Pipeline, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(Pipeline(paramsOf("fast")).run(cv::Mat(), cv::Mat()), std::invalid_argument);
+  EXPECT_THROW(Pipeline(paramsOf("fast")).run(rendered().left, rendered().right.colRange(0, 100)),
+               std::invalid_argument);
+  PipelineParams params = paramsOf("fast");
+  params.search.count = 0;
+  EXPECT_THROW(Pipeline{params}, std::invalid_argument);
+  params = paramsOf("fast");
+  params.max_memory_mb = 16.0;
+  params.search.count = 1024;
+  EXPECT_THROW(Pipeline(params).run(rendered().left, rendered().right), std::invalid_argument);
+}
+
+TEST(Pipeline, NewParametersTakeEffectAndBadOnesChangeNothing) {
+  Pipeline pipeline(paramsOf("fast"));
+  const PipelineResult before = pipeline.run(rendered().left, rendered().right);
+  PipelineParams params = paramsOf("fast");
+  params.search.count = 8;
+  pipeline.setParams(params);
+  const PipelineResult after = pipeline.run(rendered().left, rendered().right);
+  double largest = 0.0;
+  cv::minMaxLoc(after.disparity, nullptr, &largest, nullptr, nullptr, after.disparity == after.disparity);
+  EXPECT_LT(largest, 8.0);
+  params.search.count = -1;
+  EXPECT_THROW(pipeline.setParams(params), std::invalid_argument);
+  EXPECT_EQ(pipeline.params().search.count, 8);
+}
+
+/// Bounds recorded from the first measurement, about a tenth above it: what must not get worse unnoticed.
+TEST(Pipeline, RealPairsStayWithinTheirRecordedBounds) {
+  const std::string folder = FDP_STEREO_SOURCE_DIR "/../shared/data/MiddEval3-trainingQ/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const std::pair<const char*, double> bounds[] = {{"Teddy", 7.0}, {"Motorcycle", 7.0}, {"Recycle", 9.5}};
+  for (const auto& [name, bad_1] : bounds) {
+    const Scene scene = readScene(findScenes(folder + name).front());
+    PipelineParams params = loadPreset("fast");
+    params.search = {0, scene.num_disparities};
+    params.hole_filling.enabled = true;
+    const PipelineResult result = Pipeline(params).run(scene.left, scene.right);
+    EXPECT_LT(evaluateDisparity(result.disparity, scene.truth, scene.mask).bad[3], bad_1) << name;
+  }
+}
+
+}  // namespace
+}  // namespace fdp_stereo
