@@ -11,84 +11,78 @@ inline T smaller(T a, T b) {
   return a < b ? a : b;
 }
 
-/// One path of one disparity; all sums fit T by the choice of the cost step.
-template <typename T>
-inline T pathCost(const T* before, int i, T cost, T p1, T jump, T smallest) {
-  const T aside = static_cast<T>(smaller(before[i - 1], before[i + 1]) + p1);
-  return static_cast<T>(static_cast<T>(smaller(smaller(before[i], aside), jump) - smallest) + cost);
+// Vector types of the compiler, of a fixed width on every instruction set: the disparities of a pixel are a multiple of
+// 16, so that no scalar remainder is left.
+template <typename T, int kLanes>
+struct Lanes {
+  typedef T Vector __attribute__((vector_size(kLanes * sizeof(T))));
+  typedef std::uint16_t Sums __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
+
+  static Vector load(const T* from) {
+    Vector v;
+    __builtin_memcpy(&v, from, sizeof(v));
+    return v;
+  }
+  static void store(const Vector& v, T* to) { __builtin_memcpy(to, &v, sizeof(v)); }
+  static Vector smallerOf(const Vector& a, const Vector& b) { return a < b ? a : b; }
+  static T smallestOf(const Vector& v) {
+    T lanes[kLanes];
+    store(v, lanes);
+    T result = lanes[0];
+    for (int i = 1; i < kLanes; ++i) result = smaller(result, lanes[i]);
+    return result;
+  }
+};
+
+/// kLanes disparities of all paths of a pixel; all sums fit T by the choice of the cost step.
+template <typename T, int kLanes, int kPaths, bool kAdd>
+inline void stepLanes(const PathStep<T>& step, int i, typename Lanes<T, kLanes>::Vector (&smallest)[kPaths],
+                      std::uint16_t* sums) {
+  using L = Lanes<T, kLanes>;
+  using Vector = typename L::Vector;
+  using Sums = typename L::Sums;
+  const Vector cost = L::load(step.costs + i);
+  Sums sum = {};
+  if (kAdd) __builtin_memcpy(&sum, sums + i, sizeof(sum));
+  for (int k = 0; k < kPaths; ++k) {
+    const T* before = step.before[k] + i;
+    const Vector aside = L::smallerOf(L::load(before - 1), L::load(before + 1)) + step.p1;
+    const Vector jump = Vector{} + step.jump[k];
+    const Vector path = L::smallerOf(L::smallerOf(L::load(before), aside), jump) - step.smallest_before[k] + cost;
+    L::store(path, step.after[k] + i);
+    smallest[k] = L::smallerOf(smallest[k], path);
+    sum += __builtin_convertvector(path, Sums);
+  }
+  __builtin_memcpy(sums + i, &sum, sizeof(sum));
 }
 
-template <typename T, bool kAdd>
-void stepTwo(PathStep<T>& step, int count, std::uint16_t* __restrict sums) {
-  const T* __restrict costs = step.costs;
-  const T* __restrict before0 = step.before[0];
-  const T* __restrict before1 = step.before[1];
-  T* __restrict after0 = step.after[0];
-  T* __restrict after1 = step.after[1];
-  T smallest0 = static_cast<T>(~T{0}), smallest1 = smallest0;
-  const T p1 = step.p1;
-  const T jump0 = step.jump[0], jump1 = step.jump[1];
-  const T least0 = step.smallest_before[0], least1 = step.smallest_before[1];
-#pragma omp simd reduction(min : smallest0, smallest1)
-  for (int i = 0; i < count; ++i) {
-    const T a = pathCost(before0, i, costs[i], p1, jump0, least0);
-    const T b = pathCost(before1, i, costs[i], p1, jump1, least1);
-    after0[i] = a;
-    after1[i] = b;
-    smallest0 = smaller(smallest0, a);
-    smallest1 = smaller(smallest1, b);
-    const std::uint16_t sum = static_cast<std::uint16_t>(a + b);
-    sums[i] = kAdd ? static_cast<std::uint16_t>(sums[i] + sum) : sum;
+template <typename T, int kPaths, bool kAdd>
+void stepPaths(PathStep<T>& paths_step, int count, std::uint16_t* sums) {
+  // A copy whose address nobody has: bytes stored through T* could otherwise change it, and it would be read anew.
+  const PathStep<T> step = paths_step;
+  constexpr int kWide = 32 / sizeof(T);
+  constexpr int kNarrow = 16;
+  typename Lanes<T, kWide>::Vector smallest[kPaths];
+  typename Lanes<T, kNarrow>::Vector smallest_end[kPaths];
+  for (int k = 0; k < kPaths; ++k) {
+    smallest[k] = ~typename Lanes<T, kWide>::Vector{};
+    smallest_end[k] = ~typename Lanes<T, kNarrow>::Vector{};
   }
-  step.smallest_after[0] = smallest0;
-  step.smallest_after[1] = smallest1;
-}
-
-template <typename T, bool kAdd>
-void stepFour(PathStep<T>& step, int count, std::uint16_t* __restrict sums) {
-  const T* __restrict costs = step.costs;
-  const T* __restrict before0 = step.before[0];
-  const T* __restrict before1 = step.before[1];
-  const T* __restrict before2 = step.before[2];
-  const T* __restrict before3 = step.before[3];
-  T* __restrict after0 = step.after[0];
-  T* __restrict after1 = step.after[1];
-  T* __restrict after2 = step.after[2];
-  T* __restrict after3 = step.after[3];
-  T smallest0 = static_cast<T>(~T{0}), smallest1 = smallest0, smallest2 = smallest0, smallest3 = smallest0;
-  const T p1 = step.p1;
-  const T jump0 = step.jump[0], jump1 = step.jump[1], jump2 = step.jump[2], jump3 = step.jump[3];
-  const T least0 = step.smallest_before[0], least1 = step.smallest_before[1];
-  const T least2 = step.smallest_before[2], least3 = step.smallest_before[3];
-#pragma omp simd reduction(min : smallest0, smallest1, smallest2, smallest3)
-  for (int i = 0; i < count; ++i) {
-    const T a = pathCost(before0, i, costs[i], p1, jump0, least0);
-    const T b = pathCost(before1, i, costs[i], p1, jump1, least1);
-    const T c = pathCost(before2, i, costs[i], p1, jump2, least2);
-    const T d = pathCost(before3, i, costs[i], p1, jump3, least3);
-    after0[i] = a;
-    after1[i] = b;
-    after2[i] = c;
-    after3[i] = d;
-    smallest0 = smaller(smallest0, a);
-    smallest1 = smaller(smallest1, b);
-    smallest2 = smaller(smallest2, c);
-    smallest3 = smaller(smallest3, d);
-    const std::uint16_t sum = static_cast<std::uint16_t>(a + b + c + d);
-    sums[i] = kAdd ? static_cast<std::uint16_t>(sums[i] + sum) : sum;
+  int i = 0;
+  for (; i + kWide <= count; i += kWide) stepLanes<T, kWide, kPaths, kAdd>(step, i, smallest, sums);
+  for (; i < count; i += kNarrow) stepLanes<T, kNarrow, kPaths, kAdd>(step, i, smallest_end, sums);
+  for (int k = 0; k < kPaths; ++k) {
+    paths_step.smallest_after[k] =
+        smaller(Lanes<T, kWide>::smallestOf(smallest[k]), Lanes<T, kNarrow>::smallestOf(smallest_end[k]));
   }
-  step.smallest_after[0] = smallest0;
-  step.smallest_after[1] = smallest1;
-  step.smallest_after[2] = smallest2;
-  step.smallest_after[3] = smallest3;
 }
 
 template <typename T>
 void step(PathStep<T>& paths_step, int paths, int count, bool add, std::uint16_t* sums) {
   if (paths == 2) {
-    add ? stepTwo<T, true>(paths_step, count, sums) : stepTwo<T, false>(paths_step, count, sums);
+    add ? stepPaths<T, 2, true>(paths_step, count, sums) : stepPaths<T, 2, false>(paths_step, count, sums);
   } else {
-    add ? stepFour<T, true>(paths_step, count, sums) : stepFour<T, false>(paths_step, count, sums);
+    add ? stepPaths<T, 4, true>(paths_step, count, sums) : stepPaths<T, 4, false>(paths_step, count, sums);
   }
 }
 
