@@ -10,7 +10,7 @@ namespace fdp_stereo {
 struct WeightedMedianParams {
   int radius = 1;            ///< px; 0 = off
   double gamma = 10.0;       ///< weight exp(-|dI|_1 / gamma), as eq. (11); 0 = plain median
-  double min_range_px = 0.0; ///< only where the disparities of the 3 x 3 px around differ by more; filled pixels always
+  double min_range_px = 0.0; ///< only where the disparities of the 3 x 3 px around differ by more; 0 = everywhere
   bool only_filled = false;  ///< only on the pixels of the mask
 };
 

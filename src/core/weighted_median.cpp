@@ -13,6 +13,7 @@ namespace fdp_stereo {
 namespace {
 
 constexpr double kUnitWeight = 4096.0;
+constexpr float kFar = 1e9F;  // beyond every disparity
 
 /// exp(-|dI|_1 / gamma) of eq. (11) for |dI|_1 = 0..765, in 1/4096.
 std::array<std::int32_t, 766> weightTable(double gamma) {
@@ -30,35 +31,48 @@ int colourDistance(const std::uint8_t* a, const std::uint8_t* b, int channels) {
   return sum;
 }
 
-/// Disparities of a window and their weights.
+/// Disparities of a window and their weights; a neighbour without disparity weighs nothing.
 struct Samples {
   std::vector<float> values;
   std::vector<std::int32_t> weights;
+  int count = 0;
+  float low = 0.0F, high = 0.0F;
+  std::int32_t total = 0;
 
-  void clear() {
-    values.clear();
-    weights.clear();
+  explicit Samples(int radius) : values((2 * radius + 1) * (2 * radius + 1)), weights(values.size()) {}
+
+  void start(float centre) {
+    count = 0;
+    total = 0;
+    low = high = centre;
   }
 
-  /// Narrows (low, high] around the median by bisection until it holds one value only: no sorting.
+  void add(float value, std::int32_t weight) {
+    const bool valid = value == value;
+    values[count] = valid ? value : low;
+    weights[count] = valid ? weight : 0;
+    total += weights[count];
+    low = value < low ? value : low;
+    high = value > high ? value : high;
+    ++count;
+  }
+
+  /// Narrows (low, high] around the median by bisection until it is shorter than 1/1024 px: no sorting.
   float median() const {
     const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
-    const int count = static_cast<int>(values.size());
-    float low = *std::min_element(values.begin(), values.end());
-    float high = *std::max_element(values.begin(), values.end());
-    const std::int32_t total = kernels.weightUpTo(values.data(), weights.data(), count, high);
+    float below = low, above = high;
     if (2 * kernels.weightUpTo(values.data(), weights.data(), count, low) >= total) return low;
-    for (float middle = 0.5F * (low + high); middle > low && middle < high; middle = 0.5F * (low + high)) {
+    while (above - below >= 1.0F / 1024.0F) {
+      const float middle = 0.5F * (below + above);
       if (2 * kernels.weightUpTo(values.data(), weights.data(), count, middle) >= total) {
-        high = middle;
+        above = middle;
       } else {
-        low = middle;
+        below = middle;
       }
-      if (high - low < 1.0F / 1024.0F) break;
     }
-    float result = high;
-    for (const float value : values) {
-      if (value > low && value < result) result = value;
+    float result = above;
+    for (int i = 0; i < count; ++i) {
+      if (weights[i] > 0 && values[i] > below && values[i] < result) result = values[i];
     }
     return result;
   }
@@ -68,29 +82,41 @@ void gather(const cv::Mat& disparity, const cv::Mat& left, int y, int x, int rad
             const std::array<std::int32_t, 766>& table, Samples& samples) {
   const int channels = left.channels();
   const auto* centre = left.ptr<std::uint8_t>(y) + x * channels;
-  samples.clear();
+  const int first = std::max(x - radius, 0), last = std::min(x + radius, disparity.cols - 1);
+  samples.start(disparity.ptr<float>(y)[x]);
   for (int v = std::max(y - radius, 0); v <= std::min(y + radius, disparity.rows - 1); ++v) {
     const auto* d = disparity.ptr<float>(v);
     const auto* pixels = left.ptr<std::uint8_t>(v);
-    for (int u = std::max(x - radius, 0); u <= std::min(x + radius, disparity.cols - 1); ++u) {
-      if (std::isnan(d[u])) continue;
-      samples.values.push_back(d[u]);
-      samples.weights.push_back(table[colourDistance(centre, pixels + u * channels, channels)]);
+    for (int u = first; u <= last; ++u) {
+      samples.add(d[u], table[colourDistance(centre, pixels + u * channels, channels)]);
     }
   }
 }
 
-/// Largest difference between the disparities of the 3 x 3 px around.
-float rangeAround(const cv::Mat& disparity, int y, int x) {
-  float low = disparity.at<float>(y, x), high = low;
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, disparity.rows - 1); ++v) {
-    const auto* d = disparity.ptr<float>(v);
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, disparity.cols - 1); ++u) {
-      low = std::fmin(low, d[u]);
-      high = std::fmax(high, d[u]);
+/// Smallest and largest of the valid disparities of three neighbours in each column, then the largest difference over
+/// three columns: edges[x] != 0 where it exceeds min_range.
+void findEdges(const cv::Mat& disparity, int y, float min_range, std::vector<float>& low, std::vector<float>& high,
+               std::uint8_t* edges) {
+  const int width = disparity.cols;
+  const float* rows[3] = {disparity.ptr<float>(std::max(y - 1, 0)), disparity.ptr<float>(y),
+                          disparity.ptr<float>(std::min(y + 1, disparity.rows - 1))};
+  // A NaN compares false and leaves the extremes as they are.
+  for (int x = 0; x < width; ++x) {
+    float smallest = kFar, largest = -kFar;
+    for (const float* row : rows) {
+      smallest = row[x] < smallest ? row[x] : smallest;
+      largest = row[x] > largest ? row[x] : largest;
     }
+    low[x + 1] = smallest;
+    high[x + 1] = largest;
   }
-  return high - low;
+  low[0] = low[width + 1] = kFar;
+  high[0] = high[width + 1] = -kFar;
+  for (int x = 0; x < width; ++x) {
+    const float smallest = std::min(low[x], std::min(low[x + 1], low[x + 2]));
+    const float largest = std::max(high[x], std::max(high[x + 1], high[x + 2]));
+    edges[x] = largest - smallest > min_range ? 1 : 0;
+  }
 }
 
 }  // namespace
@@ -100,18 +126,22 @@ void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat
   if (params.radius <= 0) return;
   const cv::Mat source = disparity.clone();
   const auto table = weightTable(params.gamma);
-  const auto min_range = static_cast<float>(params.min_range_px);
+  const float min_range = params.min_range_px > 0.0 ? static_cast<float>(params.min_range_px) : -1.0F;
 #pragma omp parallel
   {
-    Samples samples;
+    Samples samples(params.radius);
+    std::vector<float> low(source.cols + 2), high(source.cols + 2);
+    std::vector<std::uint8_t> wanted(source.cols);
 #pragma omp for schedule(dynamic, 8)
     for (int y = 0; y < source.rows; ++y) {
+      findEdges(source, y, min_range, low, high, wanted.data());
+      const auto* d = source.ptr<float>(y);
+      const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
       for (int x = 0; x < source.cols; ++x) {
-        if (std::isnan(source.at<float>(y, x))) continue;
-        const bool filled = !mask.empty() && mask.at<std::uint8_t>(y, x) != 0;
-        if (!filled && (params.only_filled || (min_range > 0.0F && rangeAround(source, y, x) <= min_range))) continue;
+        const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
+        if (wanted[x] == 0 || skip || std::isnan(d[x])) continue;
         gather(source, left, y, x, params.radius, table, samples);
-        disparity.at<float>(y, x) = samples.median();
+        disparity.ptr<float>(y)[x] = samples.median();
       }
     }
   }
