@@ -19,15 +19,22 @@ if(TARGET tests)
   add_dependencies(tests core_tests)
 endif()
 
-# Every test/tools/*_test.py drives the programs as a user does.
+# Every test/tools/*_test.py drives the programs as a user does, test/docs/*_test.py the commands of the documents.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
-file(GLOB FDP_STEREO_TOOL_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/tools/*_test.py)
-foreach(script IN LISTS FDP_STEREO_TOOL_TESTS)
+file(GLOB FDP_STEREO_SCRIPT_TESTS CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/test/tools/*_test.py ${PROJECT_SOURCE_DIR}/test/docs/*_test.py)
+foreach(script IN LISTS FDP_STEREO_SCRIPT_TESTS)
   get_filename_component(name ${script} NAME_WE)
-  add_test(NAME tool_${name} COMMAND ${Python3_EXECUTABLE} ${script})
-  set_tests_properties(tool_${name} PROPERTIES LABELS tools
+  get_filename_component(folder ${script} DIRECTORY)
+  get_filename_component(label ${folder} NAME)
+  add_test(NAME ${label}_${name} COMMAND ${Python3_EXECUTABLE} ${script})
+  set_tests_properties(${label}_${name} PROPERTIES LABELS ${label}
     ENVIRONMENT "FDP_STEREO_BIN=$<TARGET_FILE_DIR:match>;FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
 endforeach()
+
+add_test(NAME docs_parameters_are_current
+  COMMAND sh -c "$<TARGET_FILE:parameters_doc> | diff ${PROJECT_SOURCE_DIR}/docs/parameters.md -")
+set_tests_properties(docs_parameters_are_current PROPERTIES LABELS docs)
 
 # The linters of scripts/lint.sh; tidy reads the compile commands of this build.
 foreach(check format shell catkin tidy)

@@ -31,3 +31,8 @@ target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/to
 target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_tool_support Threads::Threads)
 fdp_stereo_add_tool(evaluate tools/evaluate.cpp)
 target_link_libraries(evaluate PRIVATE fdp_stereo_evaluation)
+
+# docs/parameters.md follows the list of parameters: build update_docs after a change there; a test compares the two.
+add_executable(parameters_doc tools/parameters_doc.cpp)
+target_link_libraries(parameters_doc PRIVATE fdp_stereo_core)
+add_custom_target(update_docs COMMAND parameters_doc > ${PROJECT_SOURCE_DIR}/docs/parameters.md VERBATIM)

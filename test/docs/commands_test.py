@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs every bash block of README and docs from the root of the repository, as a reader would after scripts/build.sh.
+
+A block with `<!-- skip: reason -->` on the line before it is not run; its programs must exist all the same.
+"""
+import glob
+import os
+import re
+import subprocess
+import unittest
+
+ROOT = os.environ["FDP_STEREO_SOURCE"]
+BLOCK = re.compile(r"(?:<!-- skip: (?P<reason>[^>]+) -->\n)?```bash\n(?P<code>.*?)```", re.S)
+LINK = re.compile(r"\]\((?!https?:|#)(?P<path>[^)#]+)")
+PAGES = sorted(glob.glob(os.path.join(ROOT, "*.md")) + glob.glob(os.path.join(ROOT, "docs", "*.md")))
+
+
+def blocks(page):
+    with open(page) as file:
+        return [(match["reason"], match["code"]) for match in BLOCK.finditer(file.read())]
+
+
+class CommandsTest(unittest.TestCase):
+    def test_blocks_run(self):
+        count = 0
+        for page in PAGES:
+            for reason, code in blocks(page):
+                if reason:
+                    continue
+                count += 1
+                done = subprocess.run(["bash", "-euo", "pipefail", "-c", code], cwd=ROOT, stdin=subprocess.DEVNULL,
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+                with self.subTest(page=os.path.relpath(page, ROOT), code=code):
+                    self.assertEqual(done.returncode, 0, done.stdout[-2000:])
+        self.assertGreater(count, 0)
+
+    def test_programs_of_all_blocks_exist(self):
+        for page in PAGES:
+            for _, code in blocks(page):
+                for program in re.findall(r"(?:scripts/[\w.]+|build/devel/lib/fdp_stereo/\w+)", code):
+                    with self.subTest(page=os.path.relpath(page, ROOT), program=program):
+                        self.assertTrue(os.access(os.path.join(ROOT, program), os.X_OK))
+
+    def test_links_lead_somewhere(self):
+        for page in PAGES:
+            with open(page) as file:
+                text = re.sub(r"```.*?```", "", file.read(), flags=re.S)
+            for match in LINK.finditer(text):
+                with self.subTest(page=os.path.relpath(page, ROOT), link=match["path"]):
+                    self.assertTrue(os.path.exists(os.path.join(os.path.dirname(page), match["path"])))
+
+
+if __name__ == "__main__":
+    unittest.main()

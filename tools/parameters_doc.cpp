@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// parameters_doc: prints docs/parameters.md from the list of parameters and the presets.
+#include <iostream>
+#include <sstream>
+
+#include "fdp_stereo/pipeline_params.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+std::string rangeText(const ParamRef& ref) {
+  std::ostringstream text;
+  if (const auto* choice = std::get_if<EnumRef>(&ref.value)) {
+    for (std::size_t i = 0; i < choice->names.size(); ++i) text << (i == 0 ? "" : ", ") << choice->names[i];
+  } else if (std::holds_alternative<bool*>(ref.value)) {
+    text << "true, false";
+  } else {
+    text << ref.min << " to " << ref.max << (ref.unit.empty() ? "" : " " + ref.unit);
+  }
+  return text.str();
+}
+
+void printHead() {
+  std::cout << "# Parameters\n\n"
+               "Made by `parameters_doc` from the list in `src/core/pipeline_params.cpp`; do not edit by hand.\n\n"
+               "A parameter has one key, `stage.name`, everywhere: in YAML (nested or dotted), on the command line as\n"
+               "`--set stage.name=value`, and in ROS under the name in the last column, as a private parameter of the\n"
+               "node and in dynamic_reconfigure. An unknown key is an error that names the nearest one. A value that a\n"
+               "preset leaves out has its default.\n";
+}
+
+void printTable() {
+  PipelineParams defaults;
+  const std::vector<std::string> presets = presetNames();
+  std::vector<PipelineParams> values;
+  for (const std::string& preset : presets) values.push_back(loadPreset(preset));
+  std::vector<std::vector<ParamRef>> columns;
+  for (PipelineParams& value : values) columns.push_back(paramList(value));
+  const std::vector<ParamRef> refs = paramList(defaults);
+  std::string stage;
+  for (std::size_t i = 0; i < refs.size(); ++i) {
+    const std::size_t dot = refs[i].key.find('.');
+    if (refs[i].key.substr(0, dot) != stage) {
+      stage = refs[i].key.substr(0, dot);
+      std::cout << "\n## " << stage << "\n\n| name | default |";
+      for (const std::string& preset : presets) std::cout << ' ' << preset << " |";
+      std::cout << " allowed | effect | ROS name |\n|---|---|";
+      for (std::size_t p = 0; p < presets.size(); ++p) std::cout << "---|";
+      std::cout << "---|---|---|\n";
+    }
+    std::cout << "| `" << refs[i].key.substr(dot + 1) << "` | " << toString(refs[i]) << " |";
+    for (const auto& column : columns) std::cout << ' ' << toString(column[i]) << " |";
+    std::cout << ' ' << rangeText(refs[i]) << " | " << refs[i].text << " | `" << refs[i].ros_name << "` |\n";
+  }
+}
+
+}  // namespace
+}  // namespace fdp_stereo
+
+int main() {
+  fdp_stereo::printHead();
+  fdp_stereo::printTable();
+  return 0;
+}
