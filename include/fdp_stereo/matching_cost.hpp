@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "fdp_stereo/census.hpp"
 #include "fdp_stereo/cost_volume.hpp"
@@ -37,8 +38,27 @@ struct MatchingCostParams {
 /// Largest cost that the parameters can give (2 for the paper's form).
 double maxMatchingCost(const MatchingCostParams& params);
 
-/// Fills the volume. step = cost of one raw unit; raw costs are rounded and at most round(max / step).
-/// Where x - d leaves the right image a valid cost is repeated (params.border).
+/// Stage 4 with its buffers: after the first pair of a size it allocates no memory (blurred census scales excepted).
+class MatchingCost {
+ public:
+  MatchingCost();
+  ~MatchingCost();
+  MatchingCost(const MatchingCost&) = delete;
+  MatchingCost& operator=(const MatchingCost&) = delete;
+
+  /// Fills the volume. step = cost of one raw unit; raw costs are rounded and at most round(max / step).
+  /// Where x - d leaves the right image the nearest valid cost along d is repeated.
+  /// Throws std::invalid_argument for a step with which the largest cost does not fit params.bits.
+  void compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
+               CostVolume& volume);
+
+  struct Source;
+
+ private:
+  std::unique_ptr<Source> source_;
+};
+
+/// The same with buffers of its own.
 void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
                          CostVolume& volume);
 

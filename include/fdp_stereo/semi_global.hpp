@@ -19,13 +19,15 @@ struct SemiGlobalParams {
 
 class SemiGlobal : public Optimizer {
  public:
-  explicit SemiGlobal(const SemiGlobalParams& params) : params_(params) {}
+  explicit SemiGlobal(const SemiGlobalParams& params);
+  ~SemiGlobal() override;
   void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
   double costHeadroom() const override { return params_.p1 + params_.p2; }
 
  private:
+  struct Workspace;
   SemiGlobalParams params_;
-  std::vector<std::uint16_t> sums_;
+  std::unique_ptr<Workspace> workspace_;
 };
 
 }  // namespace fdp_stereo

@@ -56,17 +56,34 @@ void censusRow(const std::vector<const T*>& rows, int width, const CensusParams&
   if (pending > 0) kernels.append(bits, width, pending, codes);
 }
 
+/// Row y with window_width / 2 replicated pixels on both sides; y is clamped into the image.
 template <typename T>
-void census(const cv::Mat& padded, int height, int width, const CensusParams& params,
-            std::vector<std::uint64_t>& codes) {
+void padRow(const cv::Mat& grey, int y, int border, T* padded) {
+  const T* row = grey.ptr<T>(std::clamp(y, 0, grey.rows - 1));
+  std::fill(padded, padded + border, row[0]);
+  std::copy(row, row + grey.cols, padded + border);
+  std::fill(padded + border + grey.cols, padded + 2 * border + grey.cols, row[grey.cols - 1]);
+}
+
+template <typename T>
+void census(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
+  const int border = params.window_width / 2;
+  const std::size_t length = static_cast<std::size_t>(grey.cols) + 2 * border;
 #pragma omp parallel
   {
-    std::vector<std::uint8_t> bits(width);
-    std::vector<const T*> rows(params.window_height);
+    thread_local std::vector<T> window;  // keep their memory from image to image
+    thread_local std::vector<std::uint8_t> bits;
+    thread_local std::vector<const T*> rows;
+    window.resize(length * params.window_height);
+    bits.resize(grey.cols);
+    rows.resize(params.window_height);
 #pragma omp for schedule(static)
-    for (int y = 0; y < height; ++y) {
-      for (int j = 0; j < params.window_height; ++j) rows[j] = padded.ptr<T>(y + j);
-      censusRow(rows, width, params, bits.data(), codes.data() + static_cast<std::size_t>(y) * width);
+    for (int y = 0; y < grey.rows; ++y) {
+      for (int j = 0; j < params.window_height; ++j) {
+        padRow(grey, y + j - params.window_height / 2, border, window.data() + j * length);
+        rows[j] = window.data() + j * length;
+      }
+      censusRow(rows, grey.cols, params, bits.data(), codes.data() + static_cast<std::size_t>(y) * grey.cols);
     }
   }
 }
@@ -76,14 +93,10 @@ void census(const cv::Mat& padded, int height, int width, const CensusParams& pa
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
   check(grey, params);
   codes.resize(grey.total());
-  cv::Mat padded;
-  const int border_x = params.window_width / 2;
-  const int border_y = params.window_height / 2;
-  cv::copyMakeBorder(grey, padded, border_y, border_y, border_x, border_x, cv::BORDER_REPLICATE);
   if (grey.depth() == CV_8U) {
-    census<std::uint8_t>(padded, grey.rows, grey.cols, params, codes);
+    census<std::uint8_t>(grey, params, codes);
   } else {
-    census<std::uint16_t>(padded, grey.rows, grey.cols, params, codes);
+    census<std::uint16_t>(grey, params, codes);
   }
 }
 

@@ -75,6 +75,7 @@ void checkMemory(const PipelineParams& params, cv::Size size) {
 }  // namespace
 
 struct Pipeline::Buffers {
+  MatchingCost matching_cost;
   CostVolume volume;
   OptimizerOutput optimized;
 };
@@ -111,7 +112,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("row_alignment");
 
   CostVolume& volume = buffers_->volume;
-  computeMatchingCost(pair, params_.search, params_.matching_cost, costStep(params_, *optimizer_), volume);
+  buffers_->matching_cost.compute(pair, params_.search, params_.matching_cost, costStep(params_, *optimizer_), volume);
   clock.done("matching_cost");
 
   const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);

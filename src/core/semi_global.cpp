@@ -9,9 +9,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <opencv2/imgproc.hpp>
+#include <omp.h>
 
 #include "disparity_selection.hpp"
+#include "image_planes.hpp"
 #include "kernels/semi_global_kernels.hpp"
 
 namespace fdp_stereo {
@@ -44,19 +45,33 @@ void stepKernel(const SemiGlobalKernels& kernels, PathStep<std::uint16_t>& step,
   kernels.stepU16(step, paths, count, add, sums);
 }
 
+/// Path costs of one sweep; keep their memory from image to image.
+template <typename T>
+struct SweepBuffers {
+  std::array<std::vector<T>, 2> rows;      // of this row and the one before
+  std::array<std::vector<T>, 2> smallest;  // of each path cost array in them
+  std::array<std::vector<T>, 2> along;     // of the path along the row
+  std::vector<T> nothing;                  // stands for a predecessor outside the image
+};
+
 /// One sweep over the image, downwards from the top left or upwards from the bottom right: the paths from the
 /// predecessor in the row and from the row before.
 template <typename T>
 class Sweep {
  public:
-  Sweep(const CostVolume& volume, const cv::Mat& grey, const Penalties<T>& penalties, int paths, bool upwards)
+  Sweep(const CostVolume& volume, const cv::Mat& grey, const Penalties<T>& penalties, int paths, bool upwards,
+        SweepBuffers<T>& buffers)
       : volume_(volume),
         grey_(grey),
         penalties_(penalties),
         paths_(paths / 2),
         upwards_(upwards),
         width_(volume.width()),
-        slot_(volume.stride() + CostVolume::kPadding) {
+        slot_(volume.stride() + CostVolume::kPadding),
+        rows_(buffers.rows),
+        smallest_(buffers.smallest),
+        along_(buffers.along),
+        nothing_(buffers.nothing) {
     const T guard = static_cast<T>(static_cast<T>(~T{0}) - penalties.p1);
     for (auto& row : rows_) row.assign(static_cast<std::size_t>(paths_ - 1) * width_ * slot_ + slot_, guard);
     for (auto& row : smallest_) row.assign(static_cast<std::size_t>(paths_ - 1) * width_, 0);
@@ -123,53 +138,13 @@ class Sweep {
   const bool upwards_;
   const int width_;
   const std::size_t slot_;
-  std::array<std::vector<T>, 2> rows_;
-  std::array<std::vector<T>, 2> smallest_;
-  std::array<std::vector<T>, 2> along_;
-  std::vector<T> nothing_;
+  std::array<std::vector<T>, 2>& rows_;
+  std::array<std::vector<T>, 2>& smallest_;
+  std::array<std::vector<T>, 2>& along_;
+  std::vector<T>& nothing_;
   int current_ = 0;
   int rows_done_ = 0;
 };
-
-/// Both sweeps start at their end of the image and store sums up to the middle; then each goes on over the rows of
-/// the other, adds to its sums and decides. Two threads share the work without a lock, and the result does not depend
-/// on whether there are two.
-template <typename T>
-void optimizeVolume(const OptimizerInput& input, const SemiGlobalParams& params, std::vector<std::uint16_t>& sums,
-                    OptimizerOutput& output) {
-  const CostVolume& volume = input.volume;
-  const Penalties<T> penalties = makePenalties<T>(params, volume.step());
-  cv::Mat grey = input.pair.left;
-  if (grey.channels() == 3) cv::cvtColor(input.pair.left, grey, cv::COLOR_BGR2GRAY);
-  const std::size_t row_sums = static_cast<std::size_t>(volume.width()) * volume.stride();
-  if (sums.size() < row_sums * volume.height()) sums.resize(row_sums * volume.height());
-  const int height = volume.height();
-  std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, grey, penalties, params.paths, false),
-                                    Sweep<T>(volume, grey, penalties, params.paths, true)};
-  std::array<DisparitySelection, 2> selections = {DisparitySelection(params.subpixel, params.uniqueness_ratio),
-                                                  DisparitySelection(params.subpixel, params.uniqueness_ratio)};
-  const int middle = height / 2;
-#pragma omp parallel num_threads(2)
-  {
-#pragma omp for schedule(static, 1)
-    for (int s = 0; s < 2; ++s) {
-      if (s == 0) {
-        for (int y = 0; y < middle; ++y) sweeps[s].row(y, false, sums.data() + y * row_sums);
-      } else {
-        for (int y = height - 1; y >= middle; --y) sweeps[s].row(y, false, sums.data() + y * row_sums);
-      }
-    }
-#pragma omp for schedule(static, 1)
-    for (int s = 0; s < 2; ++s) {
-      const int first = s == 0 ? middle : middle - 1;
-      const int last = s == 0 ? height : -1;
-      for (int y = first; y != last; y += s == 0 ? 1 : -1) {
-        sweeps[s].row(y, true, sums.data() + y * row_sums);
-        selections[s].selectRow(y, sums.data() + y * row_sums, volume.width(), volume.stride(), volume.range(), output);
-      }
-    }
-  }
-}
 
 void check(const CostVolume& volume, const SemiGlobalParams& params) {
   // One path cost holds a cost, P1 and P2; eight of them add up to 16 bits.
@@ -183,13 +158,65 @@ void check(const CostVolume& volume, const SemiGlobalParams& params) {
 
 }  // namespace
 
+struct SemiGlobal::Workspace {
+  std::vector<std::uint16_t> sums;  // H x W x stride
+  cv::Mat grey;                     // of colour images that have no 8-bit grey
+  std::array<SweepBuffers<std::uint8_t>, 2> sweeps8;
+  std::array<SweepBuffers<std::uint16_t>, 2> sweeps16;
+  std::array<DisparitySelection, 2> selections;
+
+  explicit Workspace(const SemiGlobalParams& params)
+      : selections{DisparitySelection(params.subpixel, params.uniqueness_ratio),
+                   DisparitySelection(params.subpixel, params.uniqueness_ratio)} {}
+
+  template <typename T>
+  void optimize(const OptimizerInput& input, const SemiGlobalParams& params,
+                std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output);
+};
+
+/// Both sweeps start at their end of the image and store sums up to the middle; then each goes on over the rows of
+/// the other, adds to its sums and decides. Two threads share the work without a lock, and the result does not depend
+/// on whether there are two.
+template <typename T>
+void SemiGlobal::Workspace::optimize(const OptimizerInput& input, const SemiGlobalParams& params,
+                                     std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output) {
+  const CostVolume& volume = input.volume;
+  const Penalties<T> penalties = makePenalties<T>(params, volume.step());
+  const cv::Mat& guide = eightBitGrey(input.pair.left, input.pair.left_grey, grey);
+  const int height = volume.height();
+  const int middle = height / 2;
+  const std::size_t row_sums = static_cast<std::size_t>(volume.width()) * volume.stride();
+  if (sums.size() < row_sums * height) sums.resize(row_sums * height);
+  std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, guide, penalties, params.paths, false, buffers[0]),
+                                    Sweep<T>(volume, guide, penalties, params.paths, true, buffers[1])};
+  const int first[2] = {0, height - 1}, beyond[2] = {height, -1}, turn[2] = {middle, middle - 1}, step[2] = {1, -1};
+#pragma omp parallel num_threads(std::min(2, omp_get_max_threads()))
+  {
+#pragma omp for schedule(static, 1)
+    for (int s = 0; s < 2; ++s) {
+      for (int y = first[s]; y != turn[s]; y += step[s]) sweeps[s].row(y, false, sums.data() + y * row_sums);
+    }
+#pragma omp for schedule(static, 1)
+    for (int s = 0; s < 2; ++s) {
+      for (int y = turn[s]; y != beyond[s]; y += step[s]) {
+        sweeps[s].row(y, true, sums.data() + y * row_sums);
+        selections[s].selectRow(y, sums.data() + y * row_sums, volume.width(), volume.stride(), volume.range(), output);
+      }
+    }
+  }
+}
+
+SemiGlobal::SemiGlobal(const SemiGlobalParams& params)
+    : params_(params), workspace_(std::make_unique<Workspace>(params)) {}
+SemiGlobal::~SemiGlobal() = default;
+
 void SemiGlobal::optimize(const OptimizerInput& input, OptimizerOutput& output) {
   check(input.volume, params_);
   DisparitySelection::createMaps(input.volume.height(), input.volume.width(), output);
   if (input.volume.depth() == CostVolume::Depth::kU8) {
-    optimizeVolume<std::uint8_t>(input, params_, sums_, output);
+    workspace_->optimize(input, params_, workspace_->sweeps8, output);
   } else {
-    optimizeVolume<std::uint16_t>(input, params_, sums_, output);
+    workspace_->optimize(input, params_, workspace_->sweeps16, output);
   }
 }
 
