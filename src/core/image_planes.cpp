@@ -11,8 +11,8 @@
 namespace fdp_stereo {
 
 const cv::Mat& eightBitGrey(const cv::Mat& image, const cv::Mat& grey, cv::Mat& buffer) {
-  if (grey.depth() == CV_8U) return grey;
   if (image.channels() == 1) return image;
+  if (grey.type() == CV_8UC1 && !grey.empty()) return grey;
   cv::cvtColor(image, buffer, cv::COLOR_BGR2GRAY);
   return buffer;
 }
