@@ -20,12 +20,19 @@ endfunction()
 fdp_stereo_add_tool(match tools/match.cpp)
 
 find_package(Threads REQUIRED)
+set(_report_template ${PROJECT_SOURCE_DIR}/tools/evaluation/report_template.html)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_report_template})
+file(READ ${_report_template} FDP_STEREO_REPORT_TEMPLATE)
+configure_file(tools/evaluation/report_template.cpp.in ${PROJECT_BINARY_DIR}/generated/report_template.cpp @ONLY)
+
 add_library(fdp_stereo_evaluation STATIC
   tools/evaluation/method.cpp
   tools/evaluation/pictures.cpp
   tools/evaluation/progress.cpp
+  tools/evaluation/report.cpp
   tools/evaluation/result.cpp
   tools/evaluation/runner.cpp
+  ${PROJECT_BINARY_DIR}/generated/report_template.cpp
 )
 target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/tools)
 target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_tool_support Threads::Threads)

@@ -9,6 +9,7 @@
 
 #include "command_line.hpp"
 #include "evaluation/method.hpp"
+#include "evaluation/report.hpp"
 #include "evaluation/result.hpp"
 #include "evaluation/runner.hpp"
 
@@ -22,6 +23,7 @@ struct Options {
   std::vector<std::string> presets;
   std::vector<std::string> variants;
   bool peers = false;
+  bool merge = false;
   std::string csv;
   std::string shard;
   RunOptions run;
@@ -29,7 +31,7 @@ struct Options {
 };
 
 void addOptions(CLI::App& app, Options& options) {
-  app.add_option("SCENES", options.scenes, "Middlebury or KITTI folders, or folders of such")->required();
+  app.add_option("SCENES", options.scenes, "Middlebury or KITTI folders, or folders of such");
   app.add_option("--preset", options.presets, "Presets by name or YAML file; may be given again (default: fast)")
       ->expected(1)
       ->take_all();
@@ -42,10 +44,11 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
   app.add_option("--csv", options.csv, "Write the table as CSV");
   app.add_option("--report", options.run.folder,
-                 "Write pictures and tables here; goes on where an earlier run stopped");
+                 "Write pictures, table and index.html here; goes on where an earlier run stopped");
   app.add_option("--jobs", options.run.jobs, "Scenes at once; above 1 times are disturbed, CPU and memory unknown")
       ->check(CLI::Range(1, 256));
   app.add_option("--shard", options.shard, "Do only the i-th of n parts of the scenes, 'i/n'; needs --report");
+  app.add_flag("--merge", options.merge, "Run nothing, put the parts in --report together");
   app.footer(
       "Exit codes: 0 done, 1 a scene failed (the others are done all the same), 2 the command line is at fault.");
 }
@@ -87,11 +90,33 @@ int reportFailures(const std::vector<Failure>& failures) {
   return failures.empty() ? 0 : 1;
 }
 
+std::string conditionsOf(const Options& options) {
+  std::string text =
+      options.run.all_pixels ? "All pixels with a truth are scored." : "Pixels that both cameras see are scored.";
+  text += options.pipeline.fill ? " Holes are filled." : " Holes are not filled.";
+  return text + (options.run.jobs > 1 ? " Several scenes ran at once: times are disturbed." : "");
+}
+
+int merge(const Options& options) {
+  const std::string& folder = options.run.folder;
+  if (folder.empty()) throw UsageError("--merge needs --report, the folder with the parts");
+  const std::vector<ResultRow> rows = mergeShards(folder);
+  writeCsv((fs::path(folder) / shardTableName(1, 1)).string(), rows);
+  writeReport(folder, rows, "Put together from the tables of several runs.");
+  if (!options.csv.empty()) writeCsv(options.csv, rows);
+  std::cout << tableText(rows);
+  return 0;
+}
+
 int evaluate(Options& options) {
+  if (options.merge) return merge(options);
+  if (options.scenes.empty()) throw UsageError("SCENES is required");
   parseShard(options.shard, options.run);
   const RunOutcome outcome = runMethods(options.scenes, chooseMethods(options), options.run);
   if (!outcome.rows.empty()) std::cout << tableText(outcome.rows);
   if (!options.csv.empty()) writeCsv(options.csv, outcome.rows);
+  const bool whole = options.run.shard_count == 1;
+  if (!options.run.folder.empty() && whole) writeReport(options.run.folder, outcome.rows, conditionsOf(options));
   return reportFailures(outcome.failures);
 }
 

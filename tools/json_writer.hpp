@@ -13,7 +13,10 @@ namespace fdp_stereo {
 /// Writes JSON members one after another; the caller opens and closes objects and arrays in order.
 class JsonWriter {
  public:
-  JsonWriter() { out_.imbue(std::locale::classic()); }
+  JsonWriter() {
+    out_.imbue(std::locale::classic());
+    out_.precision(10);
+  }
 
   JsonWriter& open(char bracket, const std::string& key = "") {
     separate(key);
@@ -32,6 +35,12 @@ class JsonWriter {
     return *this;
   }
   JsonWriter& add(const std::string& key, const char* text) { return add(key, std::string(text)); }
+  JsonWriter& add(const std::string& key, bool value) {
+    separate(key);
+    out_ << (value ? "true" : "false");
+    return *this;
+  }
+  JsonWriter& add(const std::string& key, int value) { return add(key, static_cast<double>(value)); }
   /// A number that is not finite becomes null.
   JsonWriter& add(const std::string& key, double value) {
     separate(key);
@@ -51,7 +60,7 @@ class JsonWriter {
     for (const char c : text) {
       if (c == '"' || c == '\\') {
         quoted += std::string("\\") + c;
-      } else if (static_cast<unsigned char>(c) < 0x20) {
+      } else if (static_cast<unsigned char>(c) < 0x20 || c == '<') {  // '<': safe inside a page's script
         char escaped[8];
         std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c));
         quoted += escaped;

@@ -119,6 +119,25 @@ class EvaluateTest(unittest.TestCase):
         self.evaluate(*self.scenes, "--report", self.report, "--set", "semi_global.p1=0.5")
         self.assertNotEqual(float(read_csv(table)["one", "fast"]["bad_0.125"]), 77.5, "other settings are done anew")
 
+    def test_shards_put_together_are_the_whole(self):
+        whole, parts = self.path("whole"), self.path("parts")
+        self.evaluate(*self.scenes, "--preset", "fast", "--preset", "paper", "--report", whole)
+        for shard in ("1/2", "2/2"):
+            self.evaluate(*self.scenes, "--preset", "fast", "--preset", "paper", "--report", parts, "--shard", shard)
+        self.assertFalse(os.path.exists(parts + "/index.html"))
+        self.evaluate("--merge", "--report", parts)
+        expected, merged = read_csv(whole + "/results.csv"), read_csv(parts + "/results.csv")
+        self.assertEqual(set(expected), set(merged))
+        for key, row in expected.items():
+            for name in BAD:
+                self.assertEqual(row[name], merged[key][name])
+        self.assertTrue(os.path.exists(parts + "/index.html"))
+
+    def test_a_missing_shard_is_named(self):
+        self.evaluate(*self.scenes, "--report", self.report, "--shard", "1/3")
+        _, err = self.evaluate("--merge", "--report", self.report, code=1)
+        self.assertIn("results-2-of-3.csv", err)
+
     def test_jobs_give_the_same_figures(self):
         self.evaluate(*self.scenes, "--csv", self.table)
         one = read_csv(self.table)
@@ -135,7 +154,7 @@ class EvaluateTest(unittest.TestCase):
                                 ("two methods", ["x", "--preset", "fast", "--preset", "fast"]),
                                 ("name of a method", ["x", "--variant", "a b=fast"]),
                                 ("1 <= i <= n", ["x", "--shard", "3/2"]), ("--report", ["x", "--shard", "1/2"]),
-                                ("--jobs", ["x", "--jobs", "0"])):
+                                ("--jobs", ["x", "--jobs", "0"]), ("--report", ["--merge"])):
             _, err = self.evaluate(*arguments, code=2)
             self.assertIn(part, err)
             self.assertEqual(err.count("\n"), 1, err)

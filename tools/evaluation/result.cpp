@@ -16,14 +16,14 @@ namespace {
 
 template <std::size_t kIndex>
 Column badColumn(const char* name, const char* heading) {
-  return {name, heading, true, [](const ResultRow& row) { return row.errors.bad[kIndex]; },
+  return {name, heading, Better::kSmaller, [](const ResultRow& row) { return row.errors.bad[kIndex]; },
           [](ResultRow& row, double value) { row.errors.bad[kIndex] = value; }};
 }
 
-#define FDP_STEREO_COLUMN(name, heading, smaller, member)                    \
-  Column {                                                                   \
-    name, heading, smaller, [](const ResultRow& row) { return row.member; }, \
-        [](ResultRow& row, double value) { row.member = value; }             \
+#define FDP_STEREO_COLUMN(name, heading, better, member)                    \
+  Column {                                                                  \
+    name, heading, better, [](const ResultRow& row) { return row.member; }, \
+        [](ResultRow& row, double value) { row.member = value; }            \
   }
 
 std::string number(double value) {
@@ -106,16 +106,16 @@ const std::vector<Column>& resultColumns() {
       badColumn<2>("bad_0.5", "bad .5"),
       badColumn<3>("bad_1", "bad 1"),
       badColumn<4>("bad_2", "bad 2"),
-      FDP_STEREO_COLUMN("density", "density", false, errors.density),
-      FDP_STEREO_COLUMN("sparse_bad_0.5", "sparse .5", true, errors.sparse_bad_half),
-      FDP_STEREO_COLUMN("average_px", "avg px", true, errors.average_px),
-      FDP_STEREO_COLUMN("time_ms", "ms", true, time_ms),
-      FDP_STEREO_COLUMN("cpu_ms", "CPU ms", true, cpu_ms),
-      FDP_STEREO_COLUMN("memory_mb", "MB", true, memory_mb),
-      FDP_STEREO_COLUMN("seeds", "seeds", false, seeds),
-      FDP_STEREO_COLUMN("seeds_wrong", "wrong %", true, seeds_wrong),
-      FDP_STEREO_COLUMN("rows_before_px", "rows px", true, rows_before_px),
-      FDP_STEREO_COLUMN("rows_after_px", "after px", true, rows_after_px),
+      FDP_STEREO_COLUMN("density", "density", Better::kLarger, errors.density),
+      FDP_STEREO_COLUMN("sparse_bad_0.5", "sparse .5", Better::kSmaller, errors.sparse_bad_half),
+      FDP_STEREO_COLUMN("average_px", "avg px", Better::kSmaller, errors.average_px),
+      FDP_STEREO_COLUMN("time_ms", "ms", Better::kSmaller, time_ms),
+      FDP_STEREO_COLUMN("cpu_ms", "CPU ms", Better::kSmaller, cpu_ms),
+      FDP_STEREO_COLUMN("memory_mb", "MB", Better::kSmaller, memory_mb),
+      FDP_STEREO_COLUMN("seeds", "seeds", Better::kNeither, seeds),
+      FDP_STEREO_COLUMN("seeds_wrong", "wrong %", Better::kSmaller, seeds_wrong),
+      FDP_STEREO_COLUMN("rows_before_px", "rows px", Better::kNeither, rows_before_px),
+      FDP_STEREO_COLUMN("rows_after_px", "after px", Better::kNeither, rows_after_px),
   };
   return columns;
 }

@@ -27,11 +27,13 @@ struct ResultRow {
   double rows_after_px = kUnknown;   ///< and after row alignment
 };
 
-/// One number of a row: its column name in the CSV, its heading, and whether a smaller one is better.
+enum class Better { kSmaller, kLarger, kNeither };
+
+/// One number of a row: its column name in the CSV, its heading, and which value is the better one.
 struct Column {
   const char* name;
   const char* heading;
-  bool smaller_is_better;
+  Better better;
   double (*get)(const ResultRow&);
   void (*set)(ResultRow&, double);
 };
