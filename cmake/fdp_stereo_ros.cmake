@@ -37,7 +37,7 @@ set(_sample_bag ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sampl
 add_custom_command(OUTPUT ${_sample_bag}
   COMMAND ${CMAKE_COMMAND} -E make_directory ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample
   COMMAND images_to_bag --left ${_sample}/left.png --right ${_sample}/right.png --left-info ${_sample}/left.yaml
-          --right-info ${_sample}/right.yaml --rate 4 --repeat 24 --output ${_sample_bag}
+          --right-info ${_sample}/right.yaml --rate 2 --repeat 16 --output ${_sample_bag}
   DEPENDS images_to_bag ${_sample}/left.png ${_sample}/right.png ${_sample}/left.yaml ${_sample}/right.yaml)
 add_custom_target(sample_bag ALL DEPENDS ${_sample_bag})
 install(FILES ${_sample_bag} sample/README.md DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/sample)

@@ -3,10 +3,13 @@
 #include "reconfigure_server.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include <dynamic_reconfigure/ConfigDescription.h>
 #include <fdp_stereo/DisparityConfig.h>
+#include <ros/service_manager.h>
 
 namespace fdp_stereo {
 namespace {
@@ -26,6 +29,35 @@ bool isNew(const Entries& known, const typename Entries::value_type& entry) {
                       [&](const auto& k) { return k.name == entry.name && k.value == entry.value; });
 }
 
+/// The numbers and flags of a namespace of the parameter server.
+dynamic_reconfigure::Config storedConfig(const XmlRpc::XmlRpcValue& const_values) {
+  dynamic_reconfigure::Config config;
+  XmlRpc::XmlRpcValue values = const_values;  // its conversions are not const
+  if (values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return config;
+  const auto append = [](auto& entries, const std::string& name, auto value) {
+    entries.emplace_back();
+    entries.back().name = name;
+    entries.back().value = value;
+  };
+  for (auto& [name, value] : values) {
+    const auto type = value.getType();
+    if (type == XmlRpc::XmlRpcValue::TypeBoolean) append(config.bools, name, static_cast<bool>(value));
+    if (type == XmlRpc::XmlRpcValue::TypeInt) append(config.ints, name, static_cast<int>(value));
+    if (type == XmlRpc::XmlRpcValue::TypeDouble) append(config.doubles, name, static_cast<double>(value));
+  }
+  return config;
+}
+
+/// A nodelet that is unloaded while one of its callbacks runs ends in the thread of that callback, later than the
+/// answer to the unloading; one that is loaded again at once must wait for the name of its service.
+void waitForPredecessor(const std::string& service) {
+  constexpr auto kPatience = std::chrono::seconds(5);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (ros::ServiceManager::instance()->lookupServicePublication(service) && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 }  // namespace
 
 ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_node, const std::vector<std::string>& others,
@@ -35,6 +67,7 @@ ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_node, const 
   updates_ = node_.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
   adopt(loadInitial(others));
   publishDescription();
+  waitForPredecessor(node_.resolveName("set_parameters"));
   service_ = node_.advertiseService("set_parameters", &ReconfigureServer::onSetParameters, this);
 }
 
@@ -54,6 +87,7 @@ NodeSettings ReconfigureServer::loadInitial(const std::vector<std::string>& othe
   }
   XmlRpc::XmlRpcValue values;
   if (!node_.getParam("", values)) return settings;
+  written_ = storedConfig(values);
   std::vector<std::string> messages;
   settings = applyRosparam(values, settings, others, messages);
   for (const std::string& message : messages) report_(message);

@@ -76,7 +76,8 @@ TEST(ApplyConfig, WhatDoesNotGoTogetherStaysAsItWas) {
   EXPECT_EQ(settings.pipeline.matching_cost.census.window_width, before);
   EXPECT_EQ(settings.pipeline.search.count, 32) << "the good edit beside it is taken";
   ASSERT_EQ(messages.size(), 1U);
-  EXPECT_NE(messages[0].find("matching_cost_census_width stays " + std::to_string(before)), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("matching_cost_census_width stays " + std::to_string(before)), std::string::npos)
+      << messages[0];
   EXPECT_NE(messages[0].find("odd"), std::string::npos) << messages[0];
 }
 
