@@ -180,7 +180,7 @@ void addLocalExpansionModel(ParamList& list, LocalExpansionParams& p) {
            "Truncation of the matching cost after data_scale; smaller forgives occlusions, larger holds weak texture.");
   list.add("disparity_steps", p.disparity_steps, 1, 16, "1/px",
            "Costs per pixel of disparity; above 1 they are computed anew on resampled images, for sub-pixel accuracy.");
-  list.add("filter_radius_px", p.filter_radius_px, 0, 50, "px", "Box radius of the guided filter of the data term.");
+  list.add("filter_radius_px", p.filter_radius_px, 1, 50, "px", "Box radius of the guided filter of the data term.");
   list.add("filter_epsilon", p.filter_epsilon, 1e-6, 1.0, "",
            "Regularisation of the guided filter; larger smooths over colour edges.");
   list.add("margin_px", p.margin_px, 0, 50, "px", "A plane is invalid where it leaves the range within this distance.");

@@ -43,10 +43,13 @@ void ExpansionMove::begin(const Smoothness& smoothness, const cv::Rect& region, 
   grow(scratch_, 4 * size);
   move_.terminal = terminal_.data();
   move_.scratch = scratch_.data();
+  grow(keep_sum_, static_cast<std::size_t>(region.area()));
   takes_.resize(std::max(takes_.size(), static_cast<std::size_t>(region.area())));
 }
 
 double ExpansionMove::offer(const Plane& plane, const float* costs) {
+  if (!keep_known_) computeKeep();
+  if (hopeless(costs)) return 0.0;
   computeTerms(plane, costs);
   const int decision = obvious();
   if (decision < 0) return 0.0;
@@ -75,10 +78,37 @@ double ExpansionMove::offerUnary(const Plane& plane, const float* costs) {
   return sum;
 }
 
+void ExpansionMove::computeKeep() {
+  const LocalExpansionKernels& kernels = FDP_STEREO_SELECT(localExpansionKernels);
+  kernels.keepCosts(move_.pairs);
+  keep_known_ = true;
+  std::size_t i = 0;
+  for (int y = inner_.y; y < inner_.y + inner_.height; ++y) {
+    const float* cost = labels_->cost.data() + labels_->index(region_.x, outer_.y + y);
+    for (int x = inner_.x; x < inner_.x + inner_.width; ++x, ++i) {
+      float sum = cost[x - inner_.x];
+      for (int d = 0; d < kPairDirections; ++d) {
+        sum += keep_[d][at(x, y)];
+        const int px = x - kDx[d];
+        const int py = y - kDy[d];
+        if (px >= 0 && px < outer_.width && py >= 0) sum += keep_[d][at(px, py)];
+      }
+      keep_sum_[i] = sum;
+    }
+  }
+}
+
+// Pixels that take a plane gain at most their current data term and all their current pairs, and pay its data term:
+// when this does not pay for any pixel alone, no set of pixels gains.
+bool ExpansionMove::hopeless(const float* costs) const {
+  const int size = region_.area();
+  int gainers = 0;
+  for (int i = 0; i < size; ++i) gainers += costs[i] < keep_sum_[i] ? 1 : 0;
+  return gainers == 0;
+}
+
 void ExpansionMove::computeTerms(const Plane& plane, const float* costs) {
   const LocalExpansionKernels& kernels = FDP_STEREO_SELECT(localExpansionKernels);
-  if (!keep_known_) kernels.keepCosts(move_.pairs);
-  keep_known_ = true;
   move_.a = plane.a;
   move_.b = plane.b;
   move_.c = plane.c;

@@ -25,6 +25,8 @@ class ExpansionMove {
   double offerUnary(const Plane& plane, const float* costs);
 
  private:
+  void computeKeep();
+  bool hopeless(const float* costs) const;
   void computeTerms(const Plane& plane, const float* costs);
   void fixBorder();
   // What the terms alone decide: -1 nobody wants the plane, 1 everybody does, 0 open.
@@ -42,6 +44,7 @@ class ExpansionMove {
   MoveTask move_{};
   std::array<std::vector<float>, kPairDirections> keep_, edge_;
   std::vector<float> terminal_, scratch_;
+  std::vector<float> keep_sum_;      // of the region: current data term and all pairs of a pixel
   std::vector<std::uint8_t> takes_;  // of the region
   GridMaxFlow flow_;
 };

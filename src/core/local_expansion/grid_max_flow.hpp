@@ -9,9 +9,11 @@
 
 namespace fdp_stereo::local_expansion {
 
-/// Maximum flow and minimum cut of a grid with 8 neighbours per node, after Boykov and Kolmogorov, "An experimental
-/// comparison of min-cut/max-flow algorithms" (PAMI 2004): two search trees grow from source and sink, meet, are
-/// augmented along the meeting path, and adopt the orphans that saturated edges leave behind.
+/// Maximum flow and minimum cut of a grid with 8 neighbours per node, by augmenting paths with a search tree that is
+/// kept from path to path, after Boykov and Kolmogorov, "An experimental comparison of min-cut/max-flow algorithms"
+/// (PAMI 2004). Two things are made for graphs in which nearly every node has a terminal edge, as those of expansion
+/// moves do: nodes that could saturate all their edges are settled first, and only the source has a tree - it meets a
+/// node with residual capacity to the sink everywhere, so a tree that grows from the sink would not pay.
 ///
 /// Neighbours are implicit and the memory is kept between graphs. Capacities are float and never negative; sums of
 /// integers below 2^24 are exact. One instance per thread.
@@ -28,7 +30,7 @@ class GridMaxFlow {
   int height() const { return height_; }
 
   /// Capacity from the source (value > 0) or to the sink (value < 0) of node (x, y).
-  void setTerminal(int x, int y, float value) { terminal_[node(x, y)] = value; }
+  void setTerminal(int x, int y, float value) { nodes_[index(x, y)].terminal = value; }
   /// Capacities of the edge from (x, y) in `direction` and of the reverse edge. Both nodes must be in the grid.
   void setEdge(int x, int y, int direction, float capacity, float reverse);
 
@@ -41,33 +43,36 @@ class GridMaxFlow {
   double solve();
   /// After solve(): does (x, y) lie on the source side of the minimum cut? Of all minimum cuts it is the one with the
   /// smallest source side: nodes that are free to choose lie on the sink side.
-  bool onSourceSide(int x, int y) const { return tree_[node(x, y)] == kSource; }
+  bool onSourceSide(int x, int y) const { return nodes_[index(x, y)].side == kSource; }
 
  private:
-  enum Tree : std::uint8_t { kFree, kSource, kSink };
-  static constexpr std::uint8_t kTerminal = 8;  // parent: the terminal itself
-  static constexpr std::uint8_t kOrphan = 9;    // parent: lost, or never had one
+  enum Side : std::uint8_t { kFree, kSource, kSink };  // kSink: residual capacity to the sink itself
+  static constexpr std::uint8_t kTerminal = 8;         // parent: the source itself
+  static constexpr std::uint8_t kOrphan = 9;           // parent: lost, or never had one
 
-  int node(int x, int y) const { return (y + 1) * stride_ + x + 1; }
-  float& capacity(int i, int direction) { return capacity_[static_cast<std::size_t>(i) * kDirections + direction]; }
-  // Residual capacity between node i and its neighbour in `direction` along the flow of the tree: away from the root
-  // for the source tree, towards the root for the sink tree.
-  float& residual(int i, int direction, std::uint8_t tree) {
-    return tree == kSource ? capacity(i, direction) : capacity(i + offset_[direction], direction ^ 4);
-  }
-  void plantTrees();
-  void activate(int i);
-  int nextActive();
-  // Grows the tree of i by one ring; returns the direction of an edge that meets the other tree, or -1.
-  int grow(int i);
-  void augment(int i, int direction);
-  float bottleneck(int i, std::uint8_t tree, float limit);
-  void push(int i, std::uint8_t tree, float flow);
-  void adoptOrphans();
-  void adopt(int i);
-  void release(int i);
-  int distanceToRoot(int i);
-  void makeOrphan(int i);
+  struct Node {
+    std::array<float, kDirections> capacity{};  // residual, to the neighbours
+    float terminal = 0.0F;                      // residual capacity from the source (> 0) or to the sink (< 0)
+    int distance = 0;                           // to the root, as of stamp
+    int stamp = 0;
+    std::uint8_t side = kFree;
+    std::uint8_t parent = kOrphan;  // direction of the parent, kTerminal or kOrphan
+    bool is_active = false;
+  };
+
+  int index(int x, int y) const { return (y + 1) * stride_ + x + 1; }
+  void settle(Node* node);
+  void passOn(Node* node);
+  void plantTree();
+  void activate(Node* node);
+  Node* nextActive();
+  // Grows the tree of a node by one ring; returns the direction of an edge that meets a sink node, or -1.
+  int grow(Node* node);
+  void augment(Node* node, int direction);
+  void adopt(Node* node);
+  void release(Node* node);
+  int distanceToRoot(Node* node);
+  void makeOrphan(Node* node);
 
   int width_ = 0;
   int height_ = 0;
@@ -75,16 +80,10 @@ class GridMaxFlow {
   std::array<int, kDirections> offset_{};
   double flow_ = 0.0;
   int time_ = 0;
-  std::vector<float> terminal_;  // residual capacity from the source (> 0) or to the sink (< 0)
-  std::vector<float> capacity_;  // residual capacities, [node][direction]
-  std::vector<std::uint8_t> tree_;
-  std::vector<std::uint8_t> parent_;  // direction of the parent, kTerminal or kOrphan
-  std::vector<int> distance_;         // to the root, valid as of stamp_
-  std::vector<int> stamp_;
-  std::vector<std::uint8_t> is_active_;
-  std::vector<int> active_;  // a queue; entries before active_front_ are done
+  std::vector<Node> nodes_;
+  std::vector<Node*> active_;  // a queue; entries before active_front_ are done
   std::size_t active_front_ = 0;
-  std::vector<int> orphans_;  // a queue likewise
+  std::vector<Node*> orphans_;  // a queue likewise
 };
 
 }  // namespace fdp_stereo::local_expansion
