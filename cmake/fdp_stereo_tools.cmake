@@ -27,6 +27,7 @@ configure_file(tools/evaluation/report_template.cpp.in ${PROJECT_BINARY_DIR}/gen
 
 add_library(fdp_stereo_evaluation STATIC
   tools/evaluation/method.cpp
+  tools/evaluation/peer.cpp
   tools/evaluation/pictures.cpp
   tools/evaluation/progress.cpp
   tools/evaluation/report.cpp

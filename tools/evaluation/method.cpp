@@ -2,57 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/method.hpp"
 
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <sstream>
+
+#include "evaluation/peer.hpp"
 
 namespace fdp_stereo {
 namespace {
 
-constexpr double kSubpixelSteps = 16.0;  // OpenCV's matchers count in 1/16 px
-
-enum class Peer { kSgbmHh, kSgbm3Way, kBm };
-
-int roundUpTo16(int count) { return (count + 15) / 16 * 16; }
-
-cv::Ptr<cv::StereoMatcher> makeSgbm(int disparities, bool three_way) {
-  const int block = three_way ? 5 : 3;
-  const int area = block * block;
-  return cv::StereoSGBM::create(0, disparities, block, 24 * area, 96 * area, 1, 63, three_way ? 10 : 0,
-                                three_way ? 100 : 0, three_way ? 2 : 0,
-                                three_way ? cv::StereoSGBM::MODE_SGBM_3WAY : cv::StereoSGBM::MODE_HH);
-}
-
-cv::Ptr<cv::StereoMatcher> makeBm(int disparities) {
-  const cv::Ptr<cv::StereoBM> matcher = cv::StereoBM::create(disparities, 15);
-  matcher->setUniquenessRatio(15);
-  matcher->setSpeckleWindowSize(100);
-  matcher->setSpeckleRange(4);
-  return matcher;
-}
-
-/// 8-bit image with `border` columns repeated on the left, so that the matcher answers there too. StereoSGBM's
-/// penalties above are those for three channels, so it is given three.
-cv::Mat peerImage(const cv::Mat& image, int border, bool grey) {
-  cv::Mat prepared = image;
-  if (prepared.depth() == CV_16U) prepared.convertTo(prepared, CV_8U, 1.0 / 256.0);
-  if (grey && prepared.channels() == 3) cv::cvtColor(prepared, prepared, cv::COLOR_BGR2GRAY);
-  if (!grey && prepared.channels() == 1) cv::cvtColor(prepared, prepared, cv::COLOR_GRAY2BGR);
-  cv::copyMakeBorder(prepared, prepared, 0, 0, border, 0, cv::BORDER_REPLICATE);
-  return prepared;
-}
-
 PipelineResult runPeer(Peer peer, bool fill, const Scene& scene) {
-  const int disparities = roundUpTo16(scene.num_disparities);
-  const cv::Ptr<cv::StereoMatcher> matcher =
-      peer == Peer::kBm ? makeBm(disparities) : makeSgbm(disparities, peer == Peer::kSgbm3Way);
-  const cv::Mat left = peerImage(scene.left, disparities, peer == Peer::kBm);
-  const cv::Mat right = peerImage(scene.right, disparities, peer == Peer::kBm);
-  cv::Mat raw;
-  matcher->compute(left, right, raw);
+  PeerMatcher matcher(peer, scene);
+  matcher.compute();
   PipelineResult result;
-  raw.colRange(disparities, raw.cols).convertTo(result.disparity, CV_32F, 1.0 / kSubpixelSteps);
-  result.disparity.setTo(kInvalidDisparity, result.disparity < 0.0F);
+  result.disparity = matcher.disparity();
   if (fill) fillHoles(result.disparity);
   return result;
 }
@@ -91,11 +52,14 @@ Method variantMethod(const std::string& text, const PipelineOptions& options) {
 }
 
 std::vector<Method> peerMethods(bool fill) {
-  const auto peer = [fill](const char* name, Peer which) {
-    const std::string settings = std::string("OpenCV ") + CV_VERSION + " " + name + (fill ? " filled\n" : "\n");
-    return Method{name, settings, [which, fill](const Scene& scene) { return runPeer(which, fill, scene); }};
-  };
-  return {peer("sgbm_hh", Peer::kSgbmHh), peer("sgbm_3way", Peer::kSgbm3Way), peer("bm", Peer::kBm)};
+  std::vector<Method> methods;
+  for (const Peer peer : {Peer::kSgbmHh, Peer::kSgbm3Way, Peer::kBm}) {
+    const std::string settings =
+        std::string("OpenCV ") + CV_VERSION + " " + peerName(peer) + (fill ? " filled\n" : "\n");
+    methods.push_back(
+        {peerName(peer), settings, [peer, fill](const Scene& scene) { return runPeer(peer, fill, scene); }});
+  }
+  return methods;
 }
 
 }  // namespace fdp_stereo

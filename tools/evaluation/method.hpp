@@ -25,8 +25,7 @@ Method pipelineMethod(const std::string& name, const std::string& preset, const 
 /// "NAME=PRESET[,stage.key=value...]", the options applying first. Throws UsageError.
 Method variantMethod(const std::string& text, const PipelineOptions& options);
 
-/// OpenCV's StereoSGBM (MODE_HH block 3; MODE_SGBM_3WAY block 5, uniqueness 10, speckles 100/2) and StereoBM (block 15,
-/// uniqueness 15, speckles 100/4), the number of disparities rounded up to 16.
+/// OpenCV's matchers as PeerMatcher sets them.
 std::vector<Method> peerMethods(bool fill);
 
 }  // namespace fdp_stereo
