@@ -32,12 +32,6 @@ foreach(script IN LISTS FDP_STEREO_SCRIPT_TESTS)
     ENVIRONMENT "FDP_STEREO_BIN=$<TARGET_FILE_DIR:match>;FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
 endforeach()
 
-if(FDP_STEREO_ROS)
-  add_test(NAME install_space_test COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/install/install_test.py)
-  set_tests_properties(install_space_test PROPERTIES LABELS install
-    ENVIRONMENT "FDP_STEREO_BUILD=${PROJECT_BINARY_DIR};FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
-endif()
-
 add_test(NAME docs_parameters_are_current
   COMMAND sh -c "$<TARGET_FILE:parameters_doc> | diff ${PROJECT_SOURCE_DIR}/docs/parameters.md -")
 set_tests_properties(docs_parameters_are_current PROPERTIES LABELS docs)

@@ -18,6 +18,7 @@ function(fdp_stereo_add_tool name)
 endfunction()
 
 fdp_stereo_add_tool(match tools/match.cpp)
+fdp_stereo_add_tool(make_seeds tools/make_seeds.cpp)
 
 find_package(Threads REQUIRED)
 set(_report_template ${PROJECT_SOURCE_DIR}/tools/evaluation/report_template.html)

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "command_line.hpp"
+#include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/pipeline.hpp"
 #include "json_writer.hpp"
@@ -25,6 +26,7 @@ struct Options {
   std::string timings;
   std::string row_alignment;
   std::string seeds;
+  std::string draw_seeds;
   bool log_energy = false;
   PipelineOptions pipeline;
 };
@@ -38,6 +40,8 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--preset", options.preset, "Preset by name, or a YAML file")->capture_default_str();
   addPipelineOptions(app, options.pipeline);
   app.add_option("--seeds", options.seeds, "Seeds of another sensor: text 'x y d [trust]', 16-bit .png or .pfm");
+  app.add_option("--draw-seeds", options.draw_seeds,
+                 "Draw the seeds on the left image, coloured by disparity, rejected ones as crosses");
   app.add_option("--color", options.color, "Write the disparity in colours, black = none");
   app.add_option("--confidence", options.confidence, "Write the confidence 0..1: .pfm, or an 8-bit picture");
   app.add_option("--row-alignment", options.row_alignment,
@@ -101,6 +105,10 @@ void writeOutputs(const Options& options, const PipelineParams& params, const cv
   if (!options.confidence.empty()) writeConfidence(options.confidence, result.confidence);
   if (!options.row_alignment.empty()) {
     writeImage(options.row_alignment, drawRowAlignment(left, result.matches, result.row_alignment));
+  }
+  if (!options.draw_seeds.empty()) {
+    const cv::Mat shown = prepareImages(left, left).left;
+    writeImage(options.draw_seeds, drawSeeds(shown, {result.seeds, result.rejected_seeds}, params.search));
   }
   if (!options.timings.empty()) writeText(options.timings, timingsJson(result, params));
 }

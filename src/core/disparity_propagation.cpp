@@ -6,10 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
+
+#include "surface_propagation.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -17,23 +20,18 @@ namespace {
 /// A seed on the pixel grid of image and volume.
 struct GridSeed {
   int x, y, index;
-  int order;  ///< among the seeds as given
 };
 
 /// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
-/// They live until the next call of this thread.
-const std::vector<GridSeed>& onGrid(const Seeds& seeds, const CostVolume& volume) {
-  thread_local std::vector<GridSeed> grid;  // keeps its memory
-  grid.clear();
+std::vector<GridSeed> onGrid(const Seeds& seeds, const CostVolume& volume) {
+  std::vector<GridSeed> grid;
   for (const Seed& seed : seeds) {
-    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min,
-                     static_cast<int>(grid.size())};
+    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min};
     const bool inside = g.x >= 0 && g.y >= 0 && g.x < volume.width() && g.y < volume.height();
     if (inside && g.index >= 0 && g.index < volume.range().count) grid.push_back(g);
   }
-  std::sort(grid.begin(), grid.end(), [](const GridSeed& a, const GridSeed& b) {
-    return std::tie(a.y, a.x, a.order) < std::tie(b.y, b.x, b.order);
-  });
+  std::stable_sort(grid.begin(), grid.end(),
+                   [](const GridSeed& a, const GridSeed& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); });
   return grid;
 }
 
@@ -60,8 +58,7 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
   const auto factors = makeFactors(params.gamma);
   const int radius = params.window / 2;
   const int channels = left.channels();
-  thread_local std::vector<std::uint8_t> touched;  // keeps its memory
-  touched.assign(left.total(), 0);
+  cv::Mat touched(left.size(), CV_8UC1, cv::Scalar(0));
   for (const GridSeed& seed : seeds) {
     const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
     for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
@@ -69,11 +66,11 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
         const std::uint32_t factor = factors[manhattan(centre, left.ptr<uchar>(y) + channels * x, channels)];
         T& raw = volume.at<T>(y, x)[seed.index];
         raw = static_cast<T>((raw * factor + 32768U) >> 16U);
-        touched[static_cast<std::size_t>(y) * left.cols + x] = 1;
+        touched.at<uchar>(y, x) = 1;
       }
     }
   }
-  return static_cast<double>(std::count(touched.begin(), touched.end(), 1)) / static_cast<double>(left.total());
+  return static_cast<double>(cv::countNonZero(touched)) / static_cast<double>(left.total());
 }
 
 void check(const cv::Mat& left, const DisparityPropagationParams& params, const CostVolume& volume) {
@@ -85,8 +82,10 @@ void check(const cv::Mat& left, const DisparityPropagationParams& params, const 
   if (params.window < 1 || params.window % 2 == 0) {
     throw std::invalid_argument("disparity propagation: window " + std::to_string(params.window) + " must be odd and >= 1");
   }
-  if (!(params.gamma > 0.0)) {
-    throw std::invalid_argument("disparity propagation: gamma " + std::to_string(params.gamma) + " must be > 0");
+  if (!(params.gamma > 0.0) || !(params.reach_px > 0.0) || !(params.spread_px > 0.0)) {
+    throw std::invalid_argument("disparity propagation: gamma " + std::to_string(params.gamma) + ", reach_px " +
+                                std::to_string(params.reach_px) + " and spread_px " + std::to_string(params.spread_px) +
+                                " must be > 0");
   }
 }
 
@@ -95,7 +94,12 @@ void check(const cv::Mat& left, const DisparityPropagationParams& params, const 
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           CostVolume& volume) {
   check(left, params, volume);
-  const std::vector<GridSeed>& grid = onGrid(seeds, volume);
+  Seeds used;
+  std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(used),
+               [&](const Seed& s) { return params.image_seeds || s.source != SeedSource::kFeature; });
+  if (used.empty()) return 0.0;
+  if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, volume);
+  const std::vector<GridSeed> grid = onGrid(used, volume);
   return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
                                                   : propagateWindows<std::uint16_t>(grid, left, params, volume);
 }

@@ -127,14 +127,30 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
 void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagationParams& propagation) {
   list.stage("sparse_disparity");
   list.add("reject_outliers", sparse.reject_outliers, "Drop seeds that contradict their neighbours.");
-  list.add("refine", sparse.refine, "Refine the disparity of a seed along the row to a fraction of a pixel.");
+  list.add("max_row_residual_px", sparse.max_row_residual_px, 0.05, 10.0, "px",
+           "Matches farther off their row after row alignment are rejected.");
+  list.add("max_deviation_px", sparse.max_deviation_px, 0.0, 2.0, "px",
+           "Matches are rejected if small windows around them find disparities that differ by more on the mean.");
+  list.add("min_support", sparse.min_support, 0.0, 1.0, "",
+           "Share of its neighbours that a seed must agree with; larger rejects more.");
+  list.add("tolerance_px", sparse.tolerance_px, 0.1, 10.0, "px", "Difference up to which two neighbouring seeds agree.");
+  list.add("max_slope", sparse.max_slope, 0.0, 2.0, "px/px",
+           "Steepest surface: neighbouring seeds may differ by this times their distance on top.");
   list.stage("disparity_propagation");
   list.add("enabled", propagation.enabled, "Lower the costs near the seeds (algorithm 1).");
+  list.add("image_seeds", propagation.image_seeds,
+           "Spread the seeds that come from the images too, not only those of other sensors.");
   list.add("form", propagation.form, {"window", "surface"},
            "Spread one disparity over a window as published, or a slanted surface.");
   list.add("window", propagation.window, 1, 101, "px", "Side of the window W_p, odd.");
   list.add("gamma", propagation.gamma, 0.1, 1000.0, "",
            "Colour difference at which the influence of a seed falls to 1/e (eq. 11).");
+  list.add("reach_px", propagation.reach_px, 1.0, 1000.0, "px",
+           "Form surface: way over even colour at which the influence of a seed falls to 1/e.");
+  list.add("strength", propagation.strength, 0.0, 1.0, "",
+           "Form surface: share of the seeds' prior in the cost of a pixel beside a trusted seed.");
+  list.add("spread_px", propagation.spread_px, 0.1, 20.0, "px",
+           "Form surface: how far from the surface of the seeds a disparity is still nearly free.");
 }
 
 void addOptimizers(ParamList& list, PipelineParams& p) {

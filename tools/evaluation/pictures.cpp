@@ -30,20 +30,6 @@ cv::Mat markInvalid(const cv::Mat& left, const cv::Mat& disparity) {
   return marked;
 }
 
-/// Seeds on the left image, coloured by disparity; rejected ones as crosses.
-cv::Mat markSeeds(const Scene& scene, const PipelineResult& result) {
-  cv::Mat marked = displayImage(scene.left) / 2;
-  for (const Seed& seed : result.seeds) {
-    const cv::Mat color = colorize(cv::Mat(1, 1, CV_32FC1, cv::Scalar(seed.d)), {0, scene.num_disparities});
-    cv::circle(marked, cv::Point(cvRound(seed.x), cvRound(seed.y)), 2, color.at<cv::Vec3b>(0), cv::FILLED);
-  }
-  for (const Seed& seed : result.rejected_seeds) {
-    cv::drawMarker(marked, cv::Point(cvRound(seed.x), cvRound(seed.y)), cv::Scalar(255, 255, 255),
-                   cv::MARKER_TILTED_CROSS, 5);
-  }
-  return marked;
-}
-
 void write(const std::string& folder, const std::string& name, const cv::Mat& picture) {
   const fs::path path = fs::path(folder) / name;
   fs::create_directories(path.parent_path());
@@ -67,7 +53,11 @@ void writeMethodPictures(const std::string& folder, const Scene& scene, const st
   write(folder, pictureName(scene.name, method, "disparity"), colorize(disparity, {0, scene.num_disparities}));
   write(folder, pictureName(scene.name, method, "errors"), colorizeErrors(disparity, scene.truth, scene.mask));
   write(folder, pictureName(scene.name, method, "invalid"), markInvalid(scene.left, disparity));
-  if (!result.seeds.empty()) write(folder, pictureName(scene.name, method, "seeds"), markSeeds(scene, result));
+  if (!result.seeds.empty()) {
+    const cv::Mat picture =
+        drawSeeds(displayImage(scene.left), {result.seeds, result.rejected_seeds}, {0, scene.num_disparities});
+    write(folder, pictureName(scene.name, method, "seeds"), picture);
+  }
 }
 
 }  // namespace fdp_stereo

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kernels/propagation_kernels.hpp"
+
+namespace fdp_stereo {
+namespace FDP_STEREO_ISA {
+namespace {
+
+template <typename T>
+void blend(const T* __restrict prior, int share, int count, T* __restrict raw) {
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t value = raw[i];
+    raw[i] = static_cast<T>(value + (((prior[i] - value) * share) >> 8));
+  }
+}
+
+void relaxRow(const float* __restrict before, const std::int32_t* __restrict owner_before, const float* __restrict step,
+              int count, float* __restrict distance, std::int32_t* __restrict owner) {
+  for (int i = 0; i < count; ++i) {
+    const float over = before[i] + step[i];
+    const bool shorter = over < distance[i];
+    owner[i] = shorter ? owner_before[i] : owner[i];
+    distance[i] = shorter ? over : distance[i];
+  }
+}
+
+}  // namespace
+
+const PropagationKernels& propagationKernels() {
+  static const PropagationKernels kernels = {blend<std::uint8_t>, blend<std::uint16_t>, relaxRow};
+  return kernels;
+}
+
+}  // namespace FDP_STEREO_ISA
+}  // namespace fdp_stereo
