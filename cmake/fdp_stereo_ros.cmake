@@ -31,6 +31,9 @@ target_link_libraries(images_to_bag PRIVATE fdp_stereo_nodelet yaml-cpp)
 fdp_stereo_add_tool(demo_report tools/demo_report.cpp)
 target_link_libraries(demo_report PRIVATE fdp_stereo_nodelet)
 
+fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
+target_link_libraries(process_bag PRIVATE fdp_stereo_nodelet)
+
 # The sample recording, from the pair in sample/.
 set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
 set(_sample_bag ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample/motorcycle.bag)
