@@ -11,6 +11,8 @@
 
 namespace fdp_stereo {
 
+class Scaling;
+
 /// All that one run found.
 struct PipelineResult {
   cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
@@ -49,6 +51,8 @@ class Pipeline {
  private:
   struct Buffers;
   RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
+  void restoreSize(const Scaling& scaling, const StereoPair& matched, const StereoPair& given,
+                   PipelineResult& result) const;
   void postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const;
 
   PipelineParams params_;

@@ -26,7 +26,8 @@ namespace fdp_stereo {
 
 struct PipelineParams {
   DisparityRange search;
-  int threads = 0;             ///< 0 = all cores
+  int threads = 0;              ///< 0 = all cores
+  double scale = 1.0;          ///< of the sides of the images that are matched; the disparity has full size again
   double max_memory_mb = 4096;  ///< a pair that would need more is refused
   FeatureMatchingParams feature_matching;
   RowAlignmentParams row_alignment;

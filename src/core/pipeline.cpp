@@ -8,8 +8,10 @@
 #include <stdexcept>
 
 #include <omp.h>
+#include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/image_preparation.hpp"
+#include "fdp_stereo/scaling.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -61,12 +63,12 @@ float costStep(const PipelineParams& params, const Optimizer& optimizer) {
   return static_cast<float>((maxMatchingCost(params.matching_cost) + optimizer.costHeadroom()) / steps);
 }
 
-void checkMemory(const PipelineParams& params, cv::Size size) {
-  const double cells = static_cast<double>(size.area()) * (params.search.count + CostVolume::kPadding);
+void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange search) {
+  const double cells = static_cast<double>(size.area()) * (search.count + CostVolume::kPadding);
   const double mb = cells * (params.matching_cost.bits / 8.0 + 2.0) / 1e6;
   if (mb <= params.max_memory_mb) return;
   throw std::invalid_argument("a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +
-                              std::to_string(params.search.count) + " disparities needs about " +
+                              std::to_string(search.count) + " disparities needs about " +
                               std::to_string(static_cast<int>(mb)) + " MB, above pipeline.max_memory_mb = " +
                               std::to_string(static_cast<int>(params.max_memory_mb)) +
                               ": reduce search.num_disparities or raise the limit");
@@ -99,11 +101,14 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const ThreadScope threads(params_.threads);
   PipelineResult result;
   StageClock clock(result.times);
-  StereoPair pair = prepareImages(left, right);
-  checkMemory(params_, pair.left.size());
+  const StereoPair given = prepareImages(left, right);
+  const Scaling scaling(given.left.size(), params_.scale);
+  StereoPair pair = scaling.shrink(given);
+  const DisparityRange search = scaling.shrink(params_.search);
+  checkMemory(params_, pair.left.size(), search);
   clock.done("image_preparation");
 
-  FeatureMatching features = matchFeatures(pair, params_.search, params_.feature_matching);
+  FeatureMatching features = matchFeatures(pair, search, params_.feature_matching);
   result.matches = std::move(features.matches);
   result.feature_note = std::move(features.note);
   clock.done("feature_matching");
@@ -112,11 +117,11 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("row_alignment");
 
   CostVolume& volume = buffers_->volume;
-  buffers_->matching_cost.compute(pair, params_.search, params_.matching_cost, costStep(params_, *optimizer_), volume);
+  buffers_->matching_cost.compute(pair, search, params_.matching_cost, costStep(params_, *optimizer_), volume);
   clock.done("matching_cost");
 
   const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
-  SparseDisparity sparse = buildSparseDisparity(aligned, external, pair, params_.search, params_.sparse_disparity);
+  SparseDisparity sparse = buildSparseDisparity(aligned, scaling.shrink(external), pair, search, params_.sparse_disparity);
   result.seeds = std::move(sparse.seeds);
   result.rejected_seeds = std::move(sparse.rejected);
   clock.done("sparse_disparity");
@@ -132,6 +137,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("optimizer");
 
   postProcess(pair, optimized, result);
+  if (!scaling.identity()) restoreSize(scaling, pair, given, result);
   clock.done("post_processing");
   return result;
 }
@@ -159,6 +165,17 @@ void Pipeline::postProcess(const StereoPair& pair, OptimizerOutput& optimized, P
   result.disparity = disparity;
   result.confidence = optimized.confidence.clone();
   result.confidence.setTo(0.0F, ~(disparity == disparity));
+}
+
+void Pipeline::restoreSize(const Scaling& scaling, const StereoPair& matched, const StereoPair& given,
+                           PipelineResult& result) const {
+  result.disparity = scaling.grow(result.disparity, matched.left, given.left, params_.search);
+  cv::resize(result.confidence, result.confidence, given.left.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  result.confidence.setTo(0.0F, ~(result.disparity == result.disparity));
+  result.matches = scaling.grow(std::move(result.matches));
+  result.seeds = scaling.grow(std::move(result.seeds));
+  result.rejected_seeds = scaling.grow(std::move(result.rejected_seeds));
+  result.row_alignment = scaling.grow(std::move(result.row_alignment));
 }
 
 }  // namespace fdp_stereo

@@ -63,6 +63,9 @@ void addPipeline(ParamList& list, PipelineParams& p) {
            "Number of disparities searched; more sees nearer things and costs time and memory.", "disparity_range");
   list.stage("pipeline");
   list.add("threads", p.threads, 0, 64, "", "Threads of one pair; 0 uses every core.", "threads");
+  list.add("scale", p.scale, 0.25, 1.0, "",
+           "Match smaller images, 0.5 = half the width and height, and enlarge the disparity along the edges of the full "
+           "image: a fraction of the time and memory, less detail.");
   list.add("max_memory_mb", p.max_memory_mb, 16, 65536, "MB", "A pair that would need more memory is refused.",
            "max_memory_mb");
 }

@@ -150,6 +150,24 @@ TEST(Pipeline, MirroredAndSwappedViewsExchangeTheirAnswers) {
   EXPECT_NEAR(back.at<float>(10, 100), 6.0F, 0.3F);
 }
 
+TEST_P(EveryPreset, HalfScaleGivesFullSizeAndFullDisparities) {
+  PipelineParams params = paramsOf(GetParam());
+  params.hole_filling.enabled = true;
+  params.scale = 0.5;
+  Seeds external = {{100.0F, 10.0F, 6.0F, 1.0F, 0.2F, SeedSource::kPoints}};
+  const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right, external);
+  ASSERT_EQ(result.disparity.size(), rendered().left.size());
+  ASSERT_EQ(result.confidence.size(), rendered().left.size());
+  const DisparityErrors errors = evaluateDisparity(result.disparity, rendered().truth, rendered().visible);
+  EXPECT_LT(errors.bad[3], 6.0) << "share off by more than 1 px";
+  for (const Seed& seed : result.seeds) EXPECT_TRUE(params.search.contains(seed.d)) << seed.d;
+  const auto isExternal = [](const Seed& s) { return s.source == SeedSource::kPoints; };
+  const auto kept = std::find_if(result.seeds.begin(), result.seeds.end(), isExternal);
+  ASSERT_NE(kept, result.seeds.end());
+  EXPECT_NEAR(kept->x, 100.0F, 1e-3F);
+  EXPECT_NEAR(kept->d, 6.0F, 1e-3F);
+}
+
 TEST(Pipeline, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Pipeline(paramsOf("fast")).run(cv::Mat(), cv::Mat()), std::invalid_argument);
   EXPECT_THROW(Pipeline(paramsOf("fast")).run(rendered().left, rendered().right.colRange(0, 100)),
