@@ -7,6 +7,8 @@ add_library(fdp_stereo_nodelet
   src/ros/params_ros.cpp
   src/ros/reconfigure_server.cpp
   src/ros/frame_worker.cpp
+  src/ros/seed_conversions.cpp
+  src/ros/seed_sources.cpp
   src/ros/frame_processor.cpp
   src/ros/node_status.cpp
   src/ros/thread_priority.cpp

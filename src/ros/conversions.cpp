@@ -288,14 +288,18 @@ stereo_msgs::DisparityImagePtr toDisparityMessage(const cv::Mat& disparity, cons
   return message;
 }
 
+cv::Mat decodeFloatImage(const sensor_msgs::Image& message, const std::string& topic) {
+  if (message.encoding != enc::TYPE_32FC1) {
+    fail(topic, ": encoding '", message.encoding.substr(0, 40), "' is not 32FC1");
+  }
+  checkLayout(message, sizeof(float), topic);
+  if ((message.is_bigendian != 0) != hostIsBigEndian()) fail(topic, ": floats with the bytes in the other order");
+  return wrapOrCopy(message, CV_32FC1);
+}
+
 cv::Mat fromDisparityMessage(const stereo_msgs::DisparityImage& message, const StereoGeometry& geometry,
                              const std::string& topic) {
-  if (message.image.encoding != enc::TYPE_32FC1) {
-    fail(topic, ": encoding '", message.image.encoding.substr(0, 40), "' of the disparity is not 32FC1");
-  }
-  checkLayout(message.image, sizeof(float), topic);
-  if ((message.image.is_bigendian != 0) != hostIsBigEndian()) fail(topic, ": bytes are in the other order");
-  cv::Mat disparity = wrapOrCopy(message.image, CV_32FC1).clone();
+  cv::Mat disparity = decodeFloatImage(message.image, topic).clone();
   for (int y = 0; y < disparity.rows; ++y) {
     auto* row = disparity.ptr<float>(y);
     for (int x = 0; x < disparity.cols; ++x) {

@@ -37,6 +37,9 @@ struct StereoGeometry {
 /// Throws std::invalid_argument naming `topic`, the value and the remedy; nothing is allocated before the checks.
 cv::Mat decodeImage(const sensor_msgs::Image& message, const std::string& topic);
 
+/// The same for 32FC1 (depth, disparity). Throws std::invalid_argument naming `topic`.
+cv::Mat decodeFloatImage(const sensor_msgs::Image& message, const std::string& topic);
+
 /// Checks a calibration before anything is computed from it. image_size: px of the left image as received. Throws
 /// std::invalid_argument where no right depth can come out; appends to `warnings` where the data are usable but odd.
 StereoGeometry stereoGeometry(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,

@@ -20,6 +20,7 @@
 #include "frame_worker.hpp"
 #include "node_status.hpp"
 #include "reconfigure_server.hpp"
+#include "seed_sources.hpp"
 #include "thread_priority.hpp"
 
 namespace fdp_stereo {
@@ -80,6 +81,7 @@ class DisparityNodelet : public nodelet::Nodelet {
 
   StereoTopics topics_;
   std::unique_ptr<ReconfigureServer> reconfigure_;
+  std::unique_ptr<SeedSources> seeds_;
   std::unique_ptr<FrameProcessor> processor_;
   std::atomic<bool> forget_{false};  ///< tells the worker that the stamps jumped back
 
@@ -148,9 +150,14 @@ void DisparityNodelet::onInit() {
   reconfigure_ = std::make_unique<ReconfigureServer>(
       private_node,
       std::vector<std::string>{"preset", "queue_size", "approximate_sync", "approximate_sync_tolerance",
-                               "image_transport", "watch_period", "diagnostic_period"},
+                               "image_transport", "watch_period", "diagnostic_period", "seeds_fixed_frame"},
       [this](const std::string& message) { warn(message); });
-  processor_ = std::make_unique<FrameProcessor>(topics_);
+  seeds_ = std::make_unique<SeedSources>(node, private_node);
+  processor_ = std::make_unique<FrameProcessor>(
+      topics_, [this](const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
+                      const StereoGeometry& geometry, std::vector<std::string>& warnings) {
+        return seeds_->collect(frame, settings, left, geometry, warnings);
+      });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
 
@@ -214,6 +221,7 @@ void DisparityNodelet::subscribe() {
       ros::VoidPtr(), hints);
   left_info_ = node.subscribe<CameraInfo>(
       "left/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kLeftInfo, m, left_info_filter_); });
+  seeds_->subscribe();
   right_info_ = node.subscribe<CameraInfo>(
       "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kRightInfo, m, right_info_filter_); });
 }
@@ -223,6 +231,7 @@ void DisparityNodelet::unsubscribe() {
   right_image_.shutdown();
   left_info_.shutdown();
   right_info_.shutdown();
+  seeds_->unsubscribe();
   worker_->clear();
 }
 

@@ -72,7 +72,8 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   const DisparityRange range = settings.pipeline.search;
   checkRange(range, pair.left.cols, output.report.warnings);
 
-  PipelineResult result = pipelineFor(settings).run(pair.left, pair.right, {}, cancel);
+  const Seeds external = externalSeeds(frame, settings, pair.left.size(), geometry, output.report);
+  PipelineResult result = pipelineFor(settings).run(pair.left, pair.right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
   dropUnseen(result.disparity);
 
@@ -92,6 +93,17 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   output.report.row_offset_px = result.row_alignment.offset_rms_px;
   output.report.valid_share = validShare(result.disparity);
   return output;
+}
+
+Seeds FrameProcessor::externalSeeds(const StereoFrame& frame, const NodeSettings& settings, cv::Size size,
+                                    const StereoGeometry& geometry, FrameReport& report) const {
+  if (!seeds_) return {};
+  Seeds seeds = seeds_(frame, settings, pinholeCamera(*frame.left_info, size), geometry, report.warnings);
+  if (!seeds.empty() && !settings.pipeline.disparity_propagation.enabled) {
+    report.warnings.push_back("seeds arrive but disparity_propagation_enabled is false: they have little effect");
+  }
+  report.external_seeds = seeds.size();
+  return seeds;
 }
 
 void FrameProcessor::reset() {

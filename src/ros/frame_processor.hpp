@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <stereo_msgs/DisparityImage.h>
@@ -13,6 +15,7 @@
 #include "fdp_stereo/pipeline.hpp"
 #include "frame_worker.hpp"
 #include "params_ros.hpp"
+#include "seed_conversions.hpp"
 
 namespace fdp_stereo {
 
@@ -27,6 +30,7 @@ struct WantedOutputs {
 struct FrameReport {
   std::vector<std::string> warnings;
   std::vector<StageTime> times;
+  std::size_t external_seeds = 0;  ///< of other sensors, as given to the pipeline
   std::size_t seeds = 0;
   std::size_t rejected_seeds = 0;
   double row_offset_px = 0.0;  ///< RMS over the image
@@ -42,10 +46,16 @@ struct FrameOutput {
   FrameReport report;
 };
 
+/// Seeds of other sensors for one pair; adds to `warnings` what was left out and why.
+using SeedProvider =
+    std::function<Seeds(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
+                        const StereoGeometry& geometry, std::vector<std::string>& warnings)>;
+
 /// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
 class FrameProcessor {
  public:
-  explicit FrameProcessor(StereoTopics topics) : topics_(std::move(topics)) {}
+  explicit FrameProcessor(StereoTopics topics, SeedProvider seeds = nullptr)
+      : topics_(std::move(topics)), seeds_(std::move(seeds)) {}
 
   /// Throws std::invalid_argument naming the topic, the value and the remedy where no disparity can come out. The
   /// outputs stay null where `cancel` was set meanwhile.
@@ -58,7 +68,11 @@ class FrameProcessor {
   StereoPair decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
   Pipeline& pipelineFor(const NodeSettings& settings);
 
+  Seeds externalSeeds(const StereoFrame& frame, const NodeSettings& settings, cv::Size size,
+                      const StereoGeometry& geometry, FrameReport& report) const;
+
   StereoTopics topics_;
+  SeedProvider seeds_;
   std::unique_ptr<Pipeline> pipeline_;
   unsigned revision_ = 0;
 };

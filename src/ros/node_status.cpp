@@ -112,6 +112,7 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
   diagnostics.addf("Age of the output (ms)", "%.1f", now.age_ms);
   for (const StageTime& time : now.frame.times) diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
+  diagnostics.add("Seeds of other sensors", now.frame.external_seeds);
   diagnostics.add("Seeds", now.frame.seeds);
   diagnostics.add("Seeds rejected", now.frame.rejected_seeds);
   diagnostics.addf("Row offset (px)", "%.2f", now.frame.row_offset_px);

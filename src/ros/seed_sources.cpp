@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seed_sources.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <geometry_msgs/TransformStamped.h>
+#include <boost/make_shared.hpp>
+
+namespace fdp_stereo {
+namespace {
+
+constexpr std::uint32_t kQueue = 5;
+
+Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
+  const auto& q = transform.rotation;
+  const auto& t = transform.translation;
+  Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
+  isometry.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  isometry.translation() = Eigen::Vector3d(t.x, t.y, t.z);
+  return isometry;
+}
+
+/// So many pixels of the other image lie in one square of the spacing.
+int strideFor(double spacing_px, std::uint32_t width, int left_width) {
+  return std::max(1, static_cast<int>(spacing_px * width / std::max(1, left_width) / 2.0));
+}
+
+}  // namespace
+
+SeedSources::SeedSources(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : node_(node),
+      fixed_frame_(private_node.param<std::string>("seeds_fixed_frame", "")),
+      points_topic_(node_.resolveName("seeds/points")),
+      depth_topic_(node_.resolveName("seeds/depth")),
+      disparity_topic_(node_.resolveName("seeds/disparity")),
+      depth_pairs_(message_filters::sync_policies::ExactTime<sensor_msgs::Image, sensor_msgs::CameraInfo>(kQueue),
+                   depth_image_, depth_info_) {
+  depth_pairs_.registerCallback(&SeedSources::onDepth, this);
+}
+
+void SeedSources::onDepth(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info) {
+  depth_buffer_.add(boost::make_shared<Depth>(Depth{image, info}), image->header.stamp);
+}
+
+void SeedSources::subscribe() {
+  listener_ = std::make_unique<tf2_ros::TransformListener>(transforms_, node_, true);
+  points_ = node_.subscribe<sensor_msgs::PointCloud2>(
+      "seeds/points", kQueue,
+      [this](const sensor_msgs::PointCloud2ConstPtr& m) { point_buffer_.add(m, m->header.stamp); });
+  disparity_ = node_.subscribe<stereo_msgs::DisparityImage>(
+      "seeds/disparity", kQueue,
+      [this](const stereo_msgs::DisparityImageConstPtr& m) { disparity_buffer_.add(m, m->header.stamp); });
+  depth_image_.subscribe(node_, "seeds/depth", kQueue);
+  depth_info_.subscribe(node_, "seeds/camera_info", kQueue);
+}
+
+void SeedSources::unsubscribe() {
+  points_.shutdown();
+  disparity_.shutdown();
+  depth_image_.unsubscribe();
+  depth_info_.unsubscribe();
+  listener_.reset();
+  point_buffer_.clear();
+  depth_buffer_.clear();
+  disparity_buffer_.clear();
+}
+
+Seeds SeedSources::collect(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
+                           const StereoGeometry& geometry, std::vector<std::string>& warnings) {
+  const NodeParams& params = settings.node;
+  Request request{frame, params, left, geometry, warnings, {}};
+  const std_msgs::Header& header = frame.left->header;
+  const double spacing = params.seeds_spacing_px;
+  addSource(request, point_buffer_, points_topic_, params.seeds_points, SeedSource::kPoints,
+            [&](const sensor_msgs::PointCloud2& cloud) {
+              return toLeft(pointsOfCloud(cloud, points_topic_), cloud.header, header);
+            });
+  addSource(request, depth_buffer_, depth_topic_, params.seeds_depth, SeedSource::kDepth, [&](const Depth& depth) {
+    const int stride = strideFor(spacing, depth.image->width, left.size.width);
+    return toLeft(pointsOfDepth(*depth.image, *depth.info, stride, depth_topic_), depth.image->header, header);
+  });
+  addSource(request, disparity_buffer_, disparity_topic_, params.seeds_disparity, SeedSource::kDisparity,
+            [&](const stereo_msgs::DisparityImage& disparity) {
+              const int stride = strideFor(spacing, disparity.image.width, left.size.width);
+              return pointsOfDisparity(disparity, left, stride, disparity_topic_);
+            });
+  return request.seeds;
+}
+
+template <typename Message, typename ToPoints>
+void SeedSources::addSource(Request& request, StampedBuffer<Message>& buffer, const std::string& topic,
+                            const SeedSourceParams& params, SeedSource source, const ToPoints& to_points) {
+  if (params.trust <= 0.0 || !buffer.heard()) return;
+  const NodeParams& node = request.params;
+  const auto message = buffer.nearest(request.frame.left->header.stamp, node.seeds_max_age_s, node.seeds_wait_s);
+  if (!message) {
+    request.warnings.push_back(
+        topic + ": nothing within seeds_max_age of the image; it stopped, is late, or its clock differs");
+    return;
+  }
+  try {
+    const SeedQuality quality{params.trust, params.noise_px, node.seeds_spacing_px};
+    const Seeds seeds = projectSeeds(to_points(*message), request.left, request.geometry, quality, source);
+    if (seeds.empty()) request.warnings.push_back(topic + ": none of its points is seen by the left camera");
+    request.seeds.insert(request.seeds.end(), seeds.begin(), seeds.end());
+  } catch (const std::invalid_argument& error) {
+    request.warnings.push_back(error.what());
+  } catch (const tf2::TransformException& error) {
+    request.warnings.push_back(topic + ": no transform to the left camera: " + error.what());
+  }
+}
+
+Points SeedSources::toLeft(Points points, const std_msgs::Header& from, const std_msgs::Header& left) const {
+  if (from.frame_id == left.frame_id && fixed_frame_.empty()) return points;
+  const geometry_msgs::TransformStamped transform =
+      fixed_frame_.empty()
+          ? transforms_.lookupTransform(left.frame_id, from.frame_id, from.stamp)
+          : transforms_.lookupTransform(left.frame_id, left.stamp, from.frame_id, from.stamp, fixed_frame_);
+  const Eigen::Isometry3d left_from_sensor = toIsometry(transform.transform);
+  for (Eigen::Vector3d& point : points) point = left_from_sensor * point;
+  return points;
+}
+
+}  // namespace fdp_stereo
