@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Every test/core/<stage>_test.cpp is a gtest of its own, run by ctest.
-find_package(GTest REQUIRED)
 file(GLOB FDP_STEREO_CORE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/core/*_test.cpp)
 foreach(source IN LISTS FDP_STEREO_CORE_TESTS)
   get_filename_component(name ${source} NAME_WE)
