@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // match LEFT RIGHT --output disparity.pfm: the disparity of one rectified pair.
+#include <unistd.h>
+
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -131,6 +133,11 @@ void printSummary(const Options& options, const PipelineParams& params, const Pi
             << totalMs(result) << " ms\n";
 }
 
+/// One line on the terminal that is written over by the next.
+void showProgress(int done, int all, double energy) {
+  std::cerr << "\r\x1b[Koptimising: step " << done << " of " << all << ", energy " << energy << std::flush;
+}
+
 int match(const Options& options) {
   const PipelineParams params = resolveParams(options.preset, options.pipeline);
   if (options.log_energy && params.optimizer != OptimizerType::kLocalExpansion) {
@@ -139,7 +146,11 @@ int match(const Options& options) {
   const cv::Mat left = readImage(options.left);
   const cv::Mat right = readImage(options.right);
   const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds);
-  const PipelineResult result = Pipeline(params).run(left, right, seeds);
+  Pipeline pipeline(params);
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (terminal) pipeline.setProgress(showProgress);
+  const PipelineResult result = pipeline.run(left, right, seeds);
+  if (terminal) std::cerr << "\r\x1b[K" << std::flush;
   writeOutputs(options, params, left, result);
   printSummary(options, params, result);
   return 0;

@@ -70,12 +70,13 @@ class LocalExpansion : public Optimizer {
   /// input.matching_cost is null.
   void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
   double costHeadroom() const override;
+  double bytesPerCost() const override;
   void reset() override;
 
  private:
   struct State;
   LocalExpansionParams params_;
-  SemiGlobal semi_global_;
+  SemiGlobalParams initial_;
   std::unique_ptr<State> state_;
 };
 

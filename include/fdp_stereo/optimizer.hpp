@@ -16,6 +16,9 @@ namespace fdp_stereo {
 
 enum class OptimizerType { kWinnerTakesAll, kSemiGlobal, kLocalExpansion };
 
+/// Called from the calling thread after every step of a long run: steps done, steps in all, energy.
+using OptimizerProgress = std::function<void(int, int, double)>;
+
 /// What stage 7 works on. References must outlive the call.
 struct OptimizerInput {
   const CostVolume& volume;
@@ -23,8 +26,7 @@ struct OptimizerInput {
   const Seeds& seeds;
   const std::atomic<bool>* cancel = nullptr;  ///< set from another thread: return the best so far, soon
   const MatchingCostParams* matching_cost = nullptr;  ///< what the volume was computed with, where it was computed
-  /// Called after every step of a long run, from the calling thread: steps done, steps in all, energy.
-  std::function<void(int, int, double)> progress;
+  OptimizerProgress progress;                         ///< may be empty
 };
 
 struct OptimizerOutput {
@@ -41,6 +43,8 @@ class Optimizer {
   virtual void optimize(const OptimizerInput& input, OptimizerOutput& output) = 0;
   /// The largest penalty beside the data term that has to fit beside a cost into one path cost, in cost units (0 = none).
   virtual double costHeadroom() const { return 0.0; }
+  /// Bytes that the optimiser needs beside the volume for every cost in it.
+  virtual double bytesPerCost() const { return 2.0; }
   /// Forget what was learnt from earlier frames.
   virtual void reset() {}
 };

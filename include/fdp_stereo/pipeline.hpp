@@ -45,6 +45,8 @@ class Pipeline {
   /// Takes effect with the next run; keeps buffers and what was learnt from earlier frames where that still fits.
   void setParams(const PipelineParams& params);
   const PipelineParams& params() const { return params_; }
+  /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
+  void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
   /// Forgets what was learnt from earlier frames (row alignment, previous planes).
   void reset();
 
@@ -56,6 +58,7 @@ class Pipeline {
   void postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const;
 
   PipelineParams params_;
+  OptimizerProgress progress_;
   std::unique_ptr<Optimizer> optimizer_;
   RowAlignmentAccumulator row_alignment_;
   std::unique_ptr<Buffers> buffers_;

@@ -108,20 +108,27 @@ void repair(const cv::Mat& image, const cv::Mat& consistent, const LocalExpansio
 }  // namespace
 
 LocalExpansion::LocalExpansion(const LocalExpansionParams& params, const SemiGlobalParams& initial)
-    : params_(params), semi_global_(initial), state_(std::make_unique<State>()) {}
+    : params_(params), initial_(initial), state_(std::make_unique<State>()) {}
 
 LocalExpansion::~LocalExpansion() = default;
 
 void LocalExpansion::reset() { *state_ = State{}; }
 
 double LocalExpansion::costHeadroom() const {
-  return params_.initialization == PlaneInitialization::kSemiGlobal ? semi_global_.costHeadroom() : 0.0;
+  return params_.initialization == PlaneInitialization::kSemiGlobal ? SemiGlobal(initial_).costHeadroom() : 0.0;
+}
+
+double LocalExpansion::bytesPerCost() const {
+  const double planes = params_.disparity_steps > 1 ? params_.disparity_steps + 1.0 : (params_.both_views ? 2.0 : 0.0);
+  const double initial =
+      params_.initialization == PlaneInitialization::kSemiGlobal ? SemiGlobal(initial_).bytesPerCost() : 0.0;
+  return std::max(planes, initial);
 }
 
 void LocalExpansion::optimize(const OptimizerInput& input, OptimizerOutput& output) {
   check(input, params_);
   OptimizerOutput initial;
-  if (params_.initialization == PlaneInitialization::kSemiGlobal) semi_global_.optimize(input, initial);
+  if (params_.initialization == PlaneInitialization::kSemiGlobal) SemiGlobal(initial_).optimize(input, initial);
   if (!params_.warm_start) reset();
   output = OptimizerOutput{};
   Run run(input, params_, initial);

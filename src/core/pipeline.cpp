@@ -49,8 +49,10 @@ class ThreadScope {
 
 std::unique_ptr<Optimizer> makeOptimizer(const PipelineParams& params) {
   switch (params.optimizer) {
-    case OptimizerType::kWinnerTakesAll: return std::make_unique<WinnerTakesAll>(params.winner_takes_all);
-    case OptimizerType::kSemiGlobal: return std::make_unique<SemiGlobal>(params.semi_global);
+    case OptimizerType::kWinnerTakesAll:
+      return std::make_unique<WinnerTakesAll>(params.winner_takes_all);
+    case OptimizerType::kSemiGlobal:
+      return std::make_unique<SemiGlobal>(params.semi_global);
     case OptimizerType::kLocalExpansion:
       return std::make_unique<LocalExpansion>(params.local_expansion, params.semi_global);
   }
@@ -63,15 +65,15 @@ float costStep(const PipelineParams& params, const Optimizer& optimizer) {
   return static_cast<float>((maxMatchingCost(params.matching_cost) + optimizer.costHeadroom()) / steps);
 }
 
-void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange search) {
+void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::Size size, DisparityRange search) {
   const double cells = static_cast<double>(size.area()) * (search.count + CostVolume::kPadding);
-  const double mb = cells * (params.matching_cost.bits / 8.0 + 2.0) / 1e6;
+  const double mb = cells * (params.matching_cost.bits / 8.0 + optimizer.bytesPerCost()) / 1e6;
   if (mb <= params.max_memory_mb) return;
-  throw std::invalid_argument("a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +
-                              std::to_string(search.count) + " disparities needs about " +
-                              std::to_string(static_cast<int>(mb)) + " MB, above pipeline.max_memory_mb = " +
-                              std::to_string(static_cast<int>(params.max_memory_mb)) +
-                              ": reduce search.num_disparities or raise the limit");
+  throw std::invalid_argument(
+      "a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +
+      std::to_string(search.count) + " disparities needs about " + std::to_string(static_cast<int>(mb)) +
+      " MB, above pipeline.max_memory_mb = " + std::to_string(static_cast<int>(params.max_memory_mb)) +
+      ": reduce search.num_disparities or raise the limit");
 }
 
 }  // namespace
@@ -105,7 +107,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const Scaling scaling(given.left.size(), params_.scale);
   StereoPair pair = scaling.shrink(given);
   const DisparityRange search = scaling.shrink(params_.search);
-  checkMemory(params_, pair.left.size(), search);
+  checkMemory(params_, *optimizer_, pair.left.size(), search);
   clock.done("image_preparation");
 
   FeatureMatching features = matchFeatures(pair, search, params_.feature_matching);
@@ -121,7 +123,8 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("matching_cost");
 
   const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
-  SparseDisparity sparse = buildSparseDisparity(aligned, scaling.shrink(external), pair, search, params_.sparse_disparity);
+  SparseDisparity sparse =
+      buildSparseDisparity(aligned, scaling.shrink(external), pair, search, params_.sparse_disparity);
   result.seeds = std::move(sparse.seeds);
   result.rejected_seeds = std::move(sparse.rejected);
   clock.done("sparse_disparity");
@@ -132,7 +135,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   clock.done("disparity_propagation");
 
   OptimizerOutput& optimized = buffers_->optimized;
-  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, {}}, optimized);
+  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, progress_}, optimized);
   result.energies = optimized.energies;
   clock.done("optimizer");
 
