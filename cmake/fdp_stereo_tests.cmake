@@ -31,6 +31,8 @@ foreach(script IN LISTS FDP_STEREO_SCRIPT_TESTS)
     ENVIRONMENT "FDP_STEREO_BIN=$<TARGET_FILE_DIR:match>;FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
 endforeach()
 
+add_test(NAME docs_site_builds COMMAND ${PROJECT_SOURCE_DIR}/scripts/docs.sh)
+set_tests_properties(docs_site_builds PROPERTIES LABELS docs)
 add_test(NAME docs_parameters_are_current
   COMMAND sh -c "$<TARGET_FILE:parameters_doc> | diff ${PROJECT_SOURCE_DIR}/docs/parameters.md -")
 set_tests_properties(docs_parameters_are_current PROPERTIES LABELS docs)

@@ -168,6 +168,18 @@ TEST_P(EveryPreset, HalfScaleGivesFullSizeAndFullDisparities) {
   EXPECT_NEAR(kept->d, 6.0F, 1e-3F);
 }
 
+TEST(Pipeline, ExternalSeedsBecomeSeeds) {
+  const Seeds external = {{100.0F, 60.0F, 15.0F, 1.0F, 0.5F, SeedSource::kFile},
+                          {20.0F, 20.0F, 500.0F, 1.0F, 0.5F, SeedSource::kFile},
+                          {-5.0F, 20.0F, 6.0F, 1.0F, 0.5F, SeedSource::kFile}};
+  const PipelineResult result = Pipeline(paramsOf("paper")).run(rendered().left, rendered().right, external);
+  int found = 0;
+  for (const Seed& seed : result.seeds) {
+    if (seed.source == SeedSource::kFile) ++found;
+  }
+  EXPECT_EQ(found, 1) << "one is beyond the range, one outside the image";
+}
+
 TEST(Pipeline, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Pipeline(paramsOf("fast")).run(cv::Mat(), cv::Mat()), std::invalid_argument);
   EXPECT_THROW(Pipeline(paramsOf("fast")).run(rendered().left, rendered().right.colRange(0, 100)),

@@ -112,6 +112,15 @@ class MatchTest(unittest.TestCase):
         disparity = read_pfm(self.path("d.pfm"))
         self.assertAlmostEqual(np.median(disparity[np.isfinite(disparity)]), -5.0, delta=0.1)
 
+    def test_seeds_of_a_file_are_counted(self):
+        seeds = self.path("seeds.txt")
+        with open(seeds, "w") as file:
+            file.write("60 30 9\n20 30 4 0.9\n1000 1000 9\n")
+        self.match("--seeds", seeds, "--timings", self.path("t.json"), "--set", "row_alignment.enabled=false", "--preset",
+                   "paper")
+        with open(self.path("t.json")) as file:
+            self.assertGreaterEqual(json.load(file)["seeds"], 2)
+
     def test_lists_every_parameter(self):
         code, out, _ = run("match", "--list-parameters")
         self.assertEqual(code, 0)
