@@ -19,6 +19,7 @@ endfunction()
 
 fdp_stereo_add_tool(match tools/match.cpp)
 fdp_stereo_add_tool(make_seeds tools/make_seeds.cpp)
+fdp_stereo_add_tool(warp_rows tools/warp_rows.cpp)
 
 find_package(Threads REQUIRED)
 set(_report_template ${PROJECT_SOURCE_DIR}/tools/evaluation/report_template.html)

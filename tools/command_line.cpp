@@ -53,6 +53,18 @@ void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
       "Print every parameter that --set takes and exit");
 }
 
+void addSeedSimulationOptions(CLI::App& app, SeedSimulation& simulation) {
+  app.add_option("--seed-share", simulation.share, "Share of the pixels whose truth becomes a seed")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed-noise", simulation.noise_px, "Standard deviation of the seeds' disparity, px")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--seed-outliers", simulation.outliers, "Share of the seeds whose disparity is drawn from the range")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+}
+
 PipelineParams resolveParams(const std::string& preset, const PipelineOptions& options) {
   try {
     PipelineParams params = loadPreset(preset);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fdp_stereo/evaluation.hpp"
 #include "fdp_stereo/pipeline_params.hpp"
 
 namespace fdp_stereo {
@@ -30,6 +31,9 @@ struct PipelineOptions {
 
 /// Adds --min-disparity, --num-disparities, --threads, --set, --fill, and --list-parameters, which prints and exits.
 void addPipelineOptions(CLI::App& app, PipelineOptions& options);
+
+/// Adds --seed-share, --seed-noise and --seed-outliers.
+void addSeedSimulationOptions(CLI::App& app, SeedSimulation& simulation);
 
 /// The preset with the options over it, validated. Throws UsageError.
 PipelineParams resolveParams(const std::string& preset, const PipelineOptions& options);

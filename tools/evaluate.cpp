@@ -28,6 +28,7 @@ struct Options {
   std::string shard;
   RunOptions run;
   PipelineOptions pipeline;
+  SeedSimulation seeds = {0.0, 0.25, 0.05, 1};
 };
 
 void addOptions(CLI::App& app, Options& options) {
@@ -41,6 +42,7 @@ void addOptions(CLI::App& app, Options& options) {
       ->take_all();
   app.add_flag("--peers", options.peers, "Run OpenCV's StereoSGBM (HH, 3WAY) and StereoBM beside them");
   addPipelineOptions(app, options.pipeline);
+  addSeedSimulationOptions(app, options.seeds);
   app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
   app.add_option("--csv", options.csv, "Write the table as CSV");
   app.add_option("--report", options.run.folder,
@@ -69,9 +71,11 @@ std::vector<Method> chooseMethods(const Options& options) {
   std::vector<std::string> presets = options.presets;
   if (presets.empty() && options.variants.empty()) presets = {"fast"};
   for (const std::string& preset : presets) {
-    methods.push_back(pipelineMethod(fs::path(preset).stem().string(), preset, options.pipeline));
+    methods.push_back(pipelineMethod(fs::path(preset).stem().string(), preset, options.pipeline, options.seeds));
   }
-  for (const std::string& variant : options.variants) methods.push_back(variantMethod(variant, options.pipeline));
+  for (const std::string& variant : options.variants) {
+    methods.push_back(variantMethod(variant, options.pipeline, options.seeds));
+  }
   if (options.peers) {
     for (Method& peer : peerMethods(options.pipeline.fill)) methods.push_back(std::move(peer));
   }

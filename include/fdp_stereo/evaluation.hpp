@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,17 @@ double middleburyWeight(const std::string& scene_name);
 /// Errors as colours, CV_8UC3: blue (none) over white (1 px) to red (4 px and more), black = no truth, dark where
 /// the mask is not 255, magenta = no answer.
 cv::Mat colorizeErrors(const cv::Mat& disparity, const cv::Mat& truth, const cv::Mat& mask);
+
+/// Another sensor's seeds, made from a true disparity map.
+struct SeedSimulation {
+  double share = 0.005;    ///< 0..1 of the pixels become seeds
+  double noise_px = 0.25;  ///< standard deviation of d
+  double outliers = 0.05;  ///< 0..1 of the seeds have a d drawn from the whole range
+  std::uint64_t random_seed = 1;
+};
+
+/// Seeds (SeedSource::kFile, trust 1) at some of the pixels whose truth (CV_32FC1 px, NaN = unknown) is known, sorted
+/// by (y, x). The same arguments give the same seeds, and more of one share does not move the others.
+Seeds simulateSeeds(const cv::Mat& truth, DisparityRange range, const SeedSimulation& simulation);
 
 }  // namespace fdp_stereo

@@ -119,4 +119,27 @@ cv::Mat colorizeErrors(const cv::Mat& disparity, const cv::Mat& truth, const cv:
   return colors;
 }
 
+Seeds simulateSeeds(const cv::Mat& truth, DisparityRange range, const SeedSimulation& simulation) {
+  cv::RNG rng(simulation.random_seed);
+  Seeds seeds;
+  for (int y = 0; y < truth.rows; ++y) {
+    for (int x = 0; x < truth.cols; ++x) {
+      // All are drawn at every pixel, so that one option does not change what the others do.
+      const bool chosen = rng.uniform(0.0, 1.0) < simulation.share;
+      const bool wrong = rng.uniform(0.0, 1.0) < simulation.outliers;
+      const double anything = rng.uniform(static_cast<double>(range.min), static_cast<double>(range.max()));
+      const double noise = rng.gaussian(simulation.noise_px);
+      const double d = truth.at<float>(y, x);
+      if (!chosen || std::isnan(d)) continue;
+      Seed seed;
+      seed.x = static_cast<float>(x);
+      seed.y = static_cast<float>(y);
+      seed.d = static_cast<float>(wrong ? anything : d + noise);
+      seed.source = SeedSource::kFile;
+      seeds.push_back(seed);
+    }
+  }
+  return seeds;
+}
+
 }  // namespace fdp_stereo

@@ -109,5 +109,45 @@ TEST(ErrorColors, TellErrorsApart) {
   EXPECT_LT(at(4)[0], at(0)[0]);
 }
 
+TEST(SimulateSeeds, ShareNoiseAndOutliersAreAsAsked) {
+  cv::Mat truth(400, 500, CV_32FC1, cv::Scalar(20.0F));
+  truth.rowRange(0, 100) = std::numeric_limits<float>::quiet_NaN();
+  SeedSimulation simulation;
+  simulation.share = 0.05;
+  simulation.outliers = 0.1;
+  const Seeds seeds = simulateSeeds(truth, {0, 64}, simulation);
+  EXPECT_NEAR(static_cast<double>(seeds.size()), 0.05 * 300 * 500, 300.0);
+  int far_off = 0;
+  double squares = 0.0;
+  for (const Seed& seed : seeds) {
+    EXPECT_GE(seed.y, 100.0F);
+    const double error = seed.d - 20.0;
+    if (std::abs(error) > 1.5) {
+      ++far_off;
+    } else {
+      squares += error * error;
+    }
+  }
+  const auto count = static_cast<double>(seeds.size());
+  EXPECT_NEAR(far_off / count, 0.1, 0.015);
+  EXPECT_NEAR(std::sqrt(squares / (count - far_off)), 0.25, 0.02);
+}
+
+TEST(SimulateSeeds, RepeatsItselfAndKeepsTheOthersInPlace) {
+  const cv::Mat truth(100, 100, CV_32FC1, cv::Scalar(20.0F));
+  SeedSimulation simulation;
+  const Seeds once = simulateSeeds(truth, {0, 64}, simulation);
+  const Seeds again = simulateSeeds(truth, {0, 64}, simulation);
+  simulation.outliers = 0.5;
+  const Seeds wilder = simulateSeeds(truth, {0, 64}, simulation);
+  ASSERT_EQ(once.size(), again.size());
+  ASSERT_EQ(once.size(), wilder.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_EQ(once[i].d, again[i].d);
+    EXPECT_EQ(once[i].x, wilder[i].x);
+    EXPECT_EQ(once[i].y, wilder[i].y);
+  }
+}
+
 }  // namespace
 }  // namespace fdp_stereo

@@ -18,13 +18,23 @@ PipelineResult runPeer(Peer peer, bool fill, const Scene& scene) {
   return result;
 }
 
-Method paramsMethod(const std::string& name, const PipelineParams& params, bool own_range) {
-  const auto run = [params, own_range](const Scene& scene) {
+std::string describeSeeds(const SeedSimulation& seeds) {
+  if (seeds.share <= 0.0) return "";
+  std::ostringstream text;
+  text << "# seeds from the truth: share " << seeds.share << ", noise " << seeds.noise_px << " px, outliers "
+       << seeds.outliers << ", random seed " << seeds.random_seed << '\n';
+  return text.str();
+}
+
+Method paramsMethod(const std::string& name, const PipelineParams& params, bool own_range,
+                    const SeedSimulation& seeds) {
+  const auto run = [params, own_range, seeds](const Scene& scene) {
     PipelineParams scene_params = params;
     if (!own_range) scene_params.search = {0, scene.num_disparities};
-    return Pipeline(scene_params).run(scene.left, scene.right);
+    const Seeds external = seeds.share > 0.0 ? simulateSeeds(scene.truth, scene_params.search, seeds) : Seeds();
+    return Pipeline(scene_params).run(scene.left, scene.right, external);
   };
-  return {name, toYaml(params) + (own_range ? "" : "# the scene gives the range\n"), run};
+  return {name, toYaml(params) + (own_range ? "" : "# the scene gives the range\n") + describeSeeds(seeds), run};
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -36,11 +46,12 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 }  // namespace
 
-Method pipelineMethod(const std::string& name, const std::string& preset, const PipelineOptions& options) {
-  return paramsMethod(name, resolveParams(preset, options), options.num_disparities.has_value());
+Method pipelineMethod(const std::string& name, const std::string& preset, const PipelineOptions& options,
+                      const SeedSimulation& seeds) {
+  return paramsMethod(name, resolveParams(preset, options), options.num_disparities.has_value(), seeds);
 }
 
-Method variantMethod(const std::string& text, const PipelineOptions& options) {
+Method variantMethod(const std::string& text, const PipelineOptions& options, const SeedSimulation& seeds) {
   const std::size_t equals = text.find('=');
   const std::vector<std::string> parts = split(equals == std::string::npos ? "" : text.substr(equals + 1), ',');
   if (equals == 0 || parts.empty()) {
@@ -48,7 +59,7 @@ Method variantMethod(const std::string& text, const PipelineOptions& options) {
   }
   PipelineOptions extended = options;
   extended.assignments.insert(extended.assignments.end(), parts.begin() + 1, parts.end());
-  return pipelineMethod(text.substr(0, equals), parts[0], extended);
+  return pipelineMethod(text.substr(0, equals), parts[0], extended, seeds);
 }
 
 std::vector<Method> peerMethods(bool fill) {

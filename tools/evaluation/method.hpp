@@ -19,11 +19,13 @@ struct Method {
   std::function<PipelineResult(const Scene&)> run;
 };
 
-/// Our pipeline with a preset and the options over it. The scene gives the range unless the options do.
-Method pipelineMethod(const std::string& name, const std::string& preset, const PipelineOptions& options);
+/// Our pipeline with a preset and the options over it. The scene gives the range unless the options do. With a share
+/// above 0, seeds made from the truth go in beside the images.
+Method pipelineMethod(const std::string& name, const std::string& preset, const PipelineOptions& options,
+                      const SeedSimulation& seeds);
 
 /// "NAME=PRESET[,stage.key=value...]", the options applying first. Throws UsageError.
-Method variantMethod(const std::string& text, const PipelineOptions& options);
+Method variantMethod(const std::string& text, const PipelineOptions& options, const SeedSimulation& seeds);
 
 /// OpenCV's matchers as PeerMatcher sets them.
 std::vector<Method> peerMethods(bool fill);
