@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 #include "kernels/weighted_median_kernels.hpp"
 
@@ -25,81 +28,50 @@ std::array<std::int32_t, 766> weightTable(double gamma) {
   return table;
 }
 
-int colourDistance(const std::uint8_t* a, const std::uint8_t* b, int channels) {
-  int sum = 0;
-  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
-  return sum;
-}
-
-/// Disparities of a window and their weights; a neighbour without disparity weighs nothing.
-struct Samples {
-  std::vector<float> values;
-  std::vector<std::int32_t> weights;
-  int count = 0;
-  float low = 0.0F, high = 0.0F;
-  std::int32_t total = 0;
-
-  explicit Samples(int radius) : values((2 * radius + 1) * (2 * radius + 1)), weights(values.size()) {}
-
-  void start(float centre) {
-    count = 0;
-    total = 0;
-    low = high = centre;
-  }
-
-  void add(float value, std::int32_t weight) {
-    const bool valid = value == value;
-    values[count] = valid ? value : low;
-    weights[count] = valid ? weight : 0;
-    total += weights[count];
-    low = value < low ? value : low;
-    high = value > high ? value : high;
-    ++count;
-  }
-
-  /// Narrows (low, high] around the median by bisection until it is shorter than 1/1024 px: no sorting.
-  float median() const {
-    const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
-    float below = low, above = high;
-    if (2 * kernels.weightUpTo(values.data(), weights.data(), count, low) >= total) return low;
-    while (above - below >= 1.0F / 1024.0F) {
-      const float middle = 0.5F * (below + above);
-      if (2 * kernels.weightUpTo(values.data(), weights.data(), count, middle) >= total) {
-        above = middle;
-      } else {
-        below = middle;
-      }
+/// Disparity and image with a border wide enough for the windows and vectors of every pixel: NaN beyond the map.
+class PaddedSource {
+ public:
+  PaddedSource(const cv::Mat& disparity, const cv::Mat& left, int radius) : radius_(radius) {
+    const int beyond = radius + kMedianLanes;
+    cv::copyMakeBorder(disparity, disparity_, radius, radius, radius, beyond, cv::BORDER_CONSTANT, kInvalidDisparity);
+    std::vector<cv::Mat> planes;
+    cv::split(left, planes);
+    for (const cv::Mat& plane : planes) {
+      planes_.emplace_back();
+      cv::copyMakeBorder(plane, planes_.back(), radius, radius, radius, beyond, cv::BORDER_REPLICATE);
     }
-    float result = above;
-    for (int i = 0; i < count; ++i) {
-      if (weights[i] > 0 && values[i] > below && values[i] < result) result = values[i];
-    }
-    return result;
   }
+
+  /// Row y of the map itself.
+  const float* row(int y) const { return disparity_.ptr<float>(y + radius_) + radius_; }
+
+  MedianWindow window(int y, int x, const std::int32_t* table) const {
+    MedianWindow window{};
+    window.disparity = disparity_.ptr<float>(y) + x;
+    window.disparity_stride = static_cast<std::ptrdiff_t>(disparity_.step1());
+    window.plane_stride = static_cast<std::ptrdiff_t>(planes_[0].step1());
+    window.channels = static_cast<int>(planes_.size());
+    window.side = 2 * radius_ + 1;
+    for (int c = 0; c < window.channels; ++c) {
+      window.planes[c] = planes_[c].ptr<std::uint8_t>(y) + x;
+      window.colour[c] = planes_[c].ptr<std::uint8_t>(y + radius_)[x + radius_];
+    }
+    window.centre = row(y)[x];
+    window.table = table;
+    return window;
+  }
+
+ private:
+  int radius_;
+  cv::Mat disparity_;
+  std::vector<cv::Mat> planes_;
 };
-
-void gather(const cv::Mat& disparity, const cv::Mat& left, int y, int x, int radius,
-            const std::array<std::int32_t, 766>& table, Samples& samples) {
-  const int channels = left.channels();
-  const auto* centre = left.ptr<std::uint8_t>(y) + x * channels;
-  const int first = std::max(x - radius, 0), last = std::min(x + radius, disparity.cols - 1);
-  samples.start(disparity.ptr<float>(y)[x]);
-  for (int v = std::max(y - radius, 0); v <= std::min(y + radius, disparity.rows - 1); ++v) {
-    const auto* d = disparity.ptr<float>(v);
-    const auto* pixels = left.ptr<std::uint8_t>(v);
-    for (int u = first; u <= last; ++u) {
-      samples.add(d[u], table[colourDistance(centre, pixels + u * channels, channels)]);
-    }
-  }
-}
 
 /// Smallest and largest of the valid disparities of three neighbours in each column, then the largest difference over
 /// three columns: edges[x] != 0 where it exceeds min_range.
-void findEdges(const cv::Mat& disparity, int y, float min_range, std::vector<float>& low, std::vector<float>& high,
-               std::uint8_t* edges) {
-  const int width = disparity.cols;
-  const float* rows[3] = {disparity.ptr<float>(std::max(y - 1, 0)), disparity.ptr<float>(y),
-                          disparity.ptr<float>(std::min(y + 1, disparity.rows - 1))};
+void findEdges(const PaddedSource& source, int y, int width, float min_range, std::vector<float>& low,
+               std::vector<float>& high, std::uint8_t* edges) {
+  const float* rows[3] = {source.row(y - 1), source.row(y), source.row(y + 1)};
   // A NaN compares false and leaves the extremes as they are.
   for (int x = 0; x < width; ++x) {
     float smallest = kFar, largest = -kFar;
@@ -124,24 +96,27 @@ void findEdges(const cv::Mat& disparity, int y, float min_range, std::vector<flo
 void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat& mask,
                           const WeightedMedianParams& params) {
   if (params.radius <= 0) return;
-  const cv::Mat source = disparity.clone();
+  const PaddedSource source(disparity, left, params.radius);
   const auto table = weightTable(params.gamma);
   const float min_range = params.min_range_px > 0.0 ? static_cast<float>(params.min_range_px) : -1.0F;
+  const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
+  const int side = 2 * params.radius + 1, width = disparity.cols;
+  const std::size_t samples =
+      static_cast<std::size_t>(side) * ((side + kMedianLanes - 1) / kMedianLanes * kMedianLanes);
 #pragma omp parallel
   {
-    Samples samples(params.radius);
-    std::vector<float> low(source.cols + 2), high(source.cols + 2);
-    std::vector<std::uint8_t> wanted(source.cols);
+    std::vector<float> values(samples), low(width + 2), high(width + 2);
+    std::vector<std::int32_t> weights(samples);
+    std::vector<std::uint8_t> wanted(width);
 #pragma omp for schedule(dynamic, 8)
-    for (int y = 0; y < source.rows; ++y) {
-      findEdges(source, y, min_range, low, high, wanted.data());
-      const auto* d = source.ptr<float>(y);
+    for (int y = 0; y < disparity.rows; ++y) {
+      findEdges(source, y, width, min_range, low, high, wanted.data());
+      auto* d = disparity.ptr<float>(y);
       const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
-      for (int x = 0; x < source.cols; ++x) {
+      for (int x = 0; x < width; ++x) {
         const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
         if (wanted[x] == 0 || skip || std::isnan(d[x])) continue;
-        gather(source, left, y, x, params.radius, table, samples);
-        disparity.ptr<float>(y)[x] = samples.median();
+        d[x] = kernels.weightedMedian(source.window(y, x, table.data()), values.data(), weights.data());
       }
     }
   }
