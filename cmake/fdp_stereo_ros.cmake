@@ -11,6 +11,7 @@ add_library(fdp_stereo_nodelet
   src/ros/seed_sources.cpp
   src/ros/frame_processor.cpp
   src/ros/node_status.cpp
+  src/ros/diagnosis.cpp
   src/ros/thread_priority.cpp
   src/ros/disparity_nodelet.cpp
 )
@@ -30,8 +31,10 @@ add_dependencies(disparity_node fdp_stereo_nodelet)
 
 fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
 target_link_libraries(images_to_bag PRIVATE fdp_stereo_nodelet yaml-cpp)
-fdp_stereo_add_tool(demo_report tools/demo_report.cpp)
-target_link_libraries(demo_report PRIVATE fdp_stereo_nodelet)
+foreach(tool demo_report doctor latency_probe)
+  fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
+  target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
+endforeach()
 
 fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
 target_link_libraries(process_bag PRIVATE fdp_stereo_nodelet)

@@ -102,7 +102,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::mutex connect_mutex_;
   bool subscribed_ = false;
   ros::Publisher disparity_, depth_info_;
-  image_transport::Publisher depth_, confidence_;
+  image_transport::Publisher depth_, confidence_, seeds_image_;
 
   std::mutex status_mutex_;
   NodeStatus status_;
@@ -121,6 +121,7 @@ DisparityNodelet::~DisparityNodelet() {
   depth_.shutdown();
   depth_info_.shutdown();
   confidence_.shutdown();
+  seeds_image_.shutdown();
   diagnostics_timer_.stop();
   watch_timer_.stop();
   if (worker_) unsubscribe();
@@ -189,6 +190,7 @@ void DisparityNodelet::advertise() {
   depth_ = transport_->advertise("depth", 1, image_changed, image_changed);
   depth_info_ = node.advertise<CameraInfo>("depth/camera_info", 1, changed, changed);
   confidence_ = transport_->advertise("confidence", 1, image_changed, image_changed);
+  seeds_image_ = transport_->advertise("seeds/image", 1, image_changed, image_changed);
 }
 
 void DisparityNodelet::onSubscriberChange() {
@@ -206,7 +208,7 @@ void DisparityNodelet::onSubscriberChange() {
 
 bool DisparityNodelet::wanted() const {
   return disparity_.getNumSubscribers() + depth_.getNumSubscribers() + depth_info_.getNumSubscribers() +
-             confidence_.getNumSubscribers() >
+             confidence_.getNumSubscribers() + seeds_image_.getNumSubscribers() >
          0;
 }
 
@@ -304,7 +306,7 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
     if (forget_.exchange(false)) processor_->reset();
     const WantedOutputs wanted{disparity_.getNumSubscribers() > 0,
                                depth_.getNumSubscribers() + depth_info_.getNumSubscribers() > 0,
-                               confidence_.getNumSubscribers() > 0};
+                               confidence_.getNumSubscribers() > 0, seeds_image_.getNumSubscribers() > 0};
     FrameOutput output = processor_->process(frame, *settings, wanted, &cancel);
     if (cancel) return;
     publish(output);
@@ -329,6 +331,7 @@ void DisparityNodelet::publish(const FrameOutput& output) {
     depth_info_.publish(output.depth_info);
   }
   if (output.confidence) confidence_.publish(output.confidence);
+  if (output.seeds) seeds_image_.publish(output.seeds);
 }
 
 void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& output, Clock::time_point start,

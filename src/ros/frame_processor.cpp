@@ -17,6 +17,16 @@ std::string describe(const cv::Mat& image) {
   return text.str();
 }
 
+/// For display: the brightest value of 16 bits becomes white.
+cv::Mat toEightBit(const cv::Mat& image) {
+  if (image.depth() == CV_8U) return image;
+  double brightest = 0.0;
+  cv::minMaxLoc(image.reshape(1), nullptr, &brightest);
+  cv::Mat eight_bit;
+  image.convertTo(eight_bit, CV_8U, brightest > 0.0 ? 255.0 / brightest : 1.0);
+  return eight_bit;
+}
+
 /// A range with which no pixel of the image has a match is a mistake, not an empty scene.
 void checkRange(DisparityRange range, int width, std::vector<std::string>& warnings) {
   std::ostringstream text;
@@ -87,7 +97,12 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
     output.depth_info = depthInfo(frame);
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);
+  if (wanted.seeds) {
+    const cv::Mat drawn = drawSeeds(toEightBit(pair.left), {result.seeds, result.rejected_seeds}, range);
+    output.seeds = toImageMessage(drawn, header);
+  }
   output.report.times = std::move(result.times);
+  output.report.propagated_share = result.propagated_share;
   output.report.seeds = result.seeds.size();
   output.report.rejected_seeds = result.rejected_seeds.size();
   output.report.row_offset_px = result.row_alignment.offset_rms_px;

@@ -24,6 +24,7 @@ struct WantedOutputs {
   bool disparity = false;
   bool depth = false;
   bool confidence = false;
+  bool seeds = false;
 };
 
 /// What is told about one pair.
@@ -33,8 +34,9 @@ struct FrameReport {
   std::size_t external_seeds = 0;  ///< of other sensors, as given to the pipeline
   std::size_t seeds = 0;
   std::size_t rejected_seeds = 0;
-  double row_offset_px = 0.0;  ///< RMS over the image
-  double valid_share = 0.0;    ///< of the pixels
+  double propagated_share = 0.0;  ///< of the pixels whose costs the seeds changed
+  double row_offset_px = 0.0;     ///< RMS over the image
+  double valid_share = 0.0;       ///< of the pixels
 };
 
 /// Messages of one pair, null where not wanted.
@@ -43,6 +45,7 @@ struct FrameOutput {
   sensor_msgs::ImagePtr depth;
   sensor_msgs::CameraInfoPtr depth_info;
   sensor_msgs::ImagePtr confidence;
+  sensor_msgs::ImagePtr seeds;  ///< the left image with the seeds, bgr8
   FrameReport report;
 };
 

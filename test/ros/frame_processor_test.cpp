@@ -19,7 +19,7 @@ using test::kFocal;
 using test::kPlaneDisparity;
 using test::Messages;
 
-const WantedOutputs kAll{true, true, true};
+const WantedOutputs kAll{true, true, true, true};
 
 NodeSettings settings() {
   NodeSettings s;
@@ -69,6 +69,8 @@ TEST(FrameProcessor, PlaneComesOutWithItsDepth) {
   EXPECT_NEAR(depth.at<float>(60, 80), kFocal * kBaseline / kPlaneDisparity, 0.05);
   EXPECT_EQ(output.depth_info->P, goodMessages().left_info.P);
   EXPECT_GT(pixels(*output.confidence).at<float>(60, 80), 0.0F);
+  EXPECT_EQ(output.seeds->encoding, "bgr8");
+  EXPECT_EQ(output.seeds->width, 160U);
   EXPECT_GT(output.report.valid_share, 0.85);
   EXPECT_TRUE(output.report.warnings.empty());
 }
@@ -76,7 +78,7 @@ TEST(FrameProcessor, PlaneComesOutWithItsDepth) {
 TEST(FrameProcessor, WhatNobodyWantsIsNotMade) {
   FrameProcessor processor({});
   const FrameOutput output = processor.process(goodMessages().frame(), settings(), {});
-  EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence);
+  EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence || output.seeds);
   EXPECT_GT(output.report.valid_share, 0.85);
 }
 

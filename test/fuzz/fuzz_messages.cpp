@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images, calibrations and seed messages: whatever they hold, an exception that says why, or a result.
+#include <stdexcept>
+
+#include <boost/make_shared.hpp>
+
+#include "conversions.hpp"
+#include "frame_processor.hpp"
+#include "fuzz_input.hpp"
+#include "seed_conversions.hpp"
+
+namespace fdp_stereo::fuzz {
+namespace {
+
+constexpr std::size_t kMostBytes = 4096;
+
+sensor_msgs::Image takeImage(Input& input) {
+  static const char* const kEncodings[] = {"mono8",        "mono16", "bgr8",  "rgba8", "bayer_rggb8",
+                                           "bayer_grbg16", "yuv422", "32FC1", "16UC1", "8UC3"};
+  sensor_msgs::Image image;
+  const auto which = input.take<std::uint8_t>();
+  image.encoding = which < std::size(kEncodings) * 20 ? kEncodings[which / 20] : input.takeText(30);
+  image.width = input.takeSize();
+  image.height = input.takeSize();
+  image.step = which % 2 == 0 ? image.width * 4 : input.takeSize();
+  image.is_bigendian = input.take<std::uint8_t>();
+  image.data = input.takeBytes(std::min<std::size_t>(kMostBytes, std::size_t{image.step} * image.height));
+  return image;
+}
+
+sensor_msgs::CameraInfo takeInfo(Input& input, std::uint32_t width, std::uint32_t height) {
+  sensor_msgs::CameraInfo info;
+  const auto kind = input.take<std::uint8_t>();
+  info.width = kind % 2 == 0 ? width : input.takeSize();
+  info.height = kind % 2 == 0 ? height : input.takeSize();
+  info.P = {20.0, 0.0, 8.0, -2.0, 0.0, 20.0, 8.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  for (int i = 0; i < kind % 4; ++i) info.P[input.take<std::uint8_t>() % info.P.size()] = input.take<double>();
+  if (kind % 8 == 7) {
+    info.binning_x = input.takeSize();
+    info.binning_y = input.takeSize();
+    info.roi.x_offset = input.takeSize();
+    info.roi.width = input.takeSize();
+    info.roi.height = input.takeSize();
+  }
+  return info;
+}
+
+sensor_msgs::PointCloud2 takeCloud(Input& input) {
+  sensor_msgs::PointCloud2 cloud;
+  for (const char* name : {"x", "y", "z"}) {
+    sensor_msgs::PointField field;
+    field.name = name;
+    field.offset = input.takeSize();
+    field.datatype = input.take<std::uint8_t>();
+    if (field.datatype < 230) field.datatype = sensor_msgs::PointField::FLOAT32;
+    cloud.fields.push_back(field);
+  }
+  cloud.width = input.takeSize();
+  cloud.height = input.takeSize();
+  cloud.point_step = input.takeSize();
+  cloud.row_step = input.takeSize();
+  cloud.data = input.takeBytes(kMostBytes);
+  return cloud;
+}
+
+template <typename Call>
+void expectOnlyInvalid(Call&& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument&) {
+  }
+}
+
+void fuzzPair(Input& input) {
+  sensor_msgs::Image left = takeImage(input);
+  sensor_msgs::Image right = input.take<std::uint8_t>() < 200 ? left : takeImage(input);
+  StereoFrame frame;
+  frame.left_info = boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, left.width, left.height));
+  frame.right_info = boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, left.width, left.height));
+  frame.left = boost::make_shared<sensor_msgs::Image>(left);
+  frame.right = boost::make_shared<sensor_msgs::Image>(right);
+  NodeSettings settings;
+  settings.pipeline.search = {static_cast<int>(input.take<std::int8_t>()), 1 + input.take<std::uint8_t>() % 16};
+  settings.pipeline.threads = 1;
+  settings.pipeline.feature_matching.detector = FeatureDetector::kFastCensus;
+  FrameProcessor processor({});
+  expectOnlyInvalid([&] { processor.process(frame, settings, {true, true, true, true}); });
+}
+
+void fuzzSeeds(Input& input) {
+  const PinholeCamera left{20.0, 20.0, 8.0, 8.0, cv::Size(16, 16)};
+  const StereoGeometry geometry{20.0, 0.1, input.take<float>()};
+  const auto project = [&](const Points& points) { projectSeeds(points, left, geometry, {}, SeedSource::kPoints); };
+  expectOnlyInvalid([&] { project(pointsOfCloud(takeCloud(input), "cloud")); });
+  const sensor_msgs::Image image = takeImage(input);
+  expectOnlyInvalid([&] { project(pointsOfDepth(image, takeInfo(input, image.width, image.height), 1, "depth")); });
+  stereo_msgs::DisparityImage disparity;
+  disparity.image = image;
+  disparity.f = input.take<float>();
+  disparity.T = input.take<float>();
+  disparity.min_disparity = input.take<float>();
+  disparity.max_disparity = input.take<float>();
+  expectOnlyInvalid([&] { project(pointsOfDisparity(disparity, left, 1, "disparity")); });
+}
+
+}  // namespace
+}  // namespace fdp_stereo::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fdp_stereo::fuzz::Input input(data, size);
+  if (input.take<std::uint8_t>() % 2 == 0) {
+    fdp_stereo::fuzz::fuzzPair(input);
+  } else {
+    fdp_stereo::fuzz::fuzzSeeds(input);
+  }
+  return 0;
+}

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis.hpp"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "messages.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+constexpr double kSeconds = 2.0;
+
+Observation healthy() {
+  Observation seen;
+  seen.seconds = kSeconds;
+  const char* topics[] = {"/cam/left/image_rect", "/cam/left/camera_info", "/cam/right/image_rect",
+                          "/cam/right/camera_info"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    seen.inputs[i].topic = topics[i];
+    seen.inputs[i].publishers = 1;
+    for (int k = 0; k < 20; ++k) seen.inputs[i].stamps.emplace_back(100.0 + 0.1 * k);
+  }
+  seen.pair = test::goodMessages(320, 240).frame();
+  seen.disparities = 20;
+  seen.node = "/cam/disparity";
+  seen.range = {0, 64};
+  return seen;
+}
+
+/// Text and remedy of the first finding with the verdict, "" where there is none.
+std::string first(const Observation& seen, Verdict verdict) {
+  for (const Finding& finding : diagnose(seen)) {
+    if (finding.verdict == verdict) return finding.text + " -> " + finding.remedy;
+  }
+  return "";
+}
+
+void expectContains(const std::string& text, const std::vector<std::string>& parts) {
+  for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' in: " << text;
+}
+
+TEST(Diagnose, AHealthyCamera) {
+  for (const Finding& finding : diagnose(healthy())) {
+    EXPECT_EQ(finding.verdict, Verdict::kGood) << finding.text;
+    EXPECT_EQ(finding.remedy, "");
+  }
+  EXPECT_GE(diagnose(healthy()).size(), 8U);
+}
+
+TEST(Diagnose, MissingTopics) {
+  Observation seen = healthy();
+  seen.inputs[2].stamps.clear();
+  expectContains(first(seen, Verdict::kWrong), {"/cam/right/image_rect has a publisher", "rostopic hz"});
+  seen.inputs[2].publishers = 0;
+  expectContains(first(seen, Verdict::kWrong), {"/cam/right/image_rect has no publisher", "rostopic list"});
+}
+
+TEST(Diagnose, StampsThatDoNotMeet) {
+  Observation seen = healthy();
+  for (auto& stamp : seen.inputs[2].stamps) stamp += ros::Duration(0.008);
+  expectContains(first(seen, Verdict::kWrong), {"only 0 %", "/cam/right/image_rect", "8 ms", "approximate_sync:=true"});
+}
+
+TEST(Diagnose, CalibrationThatCannotBeUsedOrIsOdd) {
+  Observation seen = healthy();
+  auto messages = test::goodMessages(320, 240);
+  messages.right_info.P[3] = 0.0;
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kWrong), {"/cam/right/camera_info", "baseline is 0"});
+  messages = test::goodMessages(320, 240);
+  messages.right_info.header.frame_id = "other";
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kOdd), {"frame_id 'other'"});
+}
+
+TEST(Diagnose, RowsThatAreOff) {
+  Observation seen = healthy();
+  auto messages = test::goodMessages(320, 240);
+  cv::Mat right = decodeImage(messages.right, "");
+  cv::Mat moved;
+  cv::warpAffine(right, moved, cv::Matx23d(1, 0, 0, 0, 1, 3), right.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  messages.right = test::imageMessage(moved, "mono8");
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kWrong), {"rows", "off by", "calibrat"});
+}
+
+TEST(Diagnose, RangeThatMissesTheScene) {
+  Observation seen = healthy();
+  seen.range = {16, 32};
+  expectContains(first(seen, Verdict::kWrong),
+                 {"100 %", "16 to 47 px", "dynparam set /cam/disparity", "min_disparity: 5"});
+}
+
+TEST(Diagnose, NoTextureAndNoOutput) {
+  Observation seen = healthy();
+  auto messages = test::goodMessages(320, 240);
+  messages.left = messages.right = test::imageMessage(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), "mono8");
+  seen.pair = messages.frame();
+  seen.disparities = 0;
+  expectContains(first(seen, Verdict::kOdd), {"only 0 matches", "texture"});
+  expectContains(first(seen, Verdict::kWrong), {"no disparity came from /cam/disparity", "roslaunch"});
+}
+
+}  // namespace
+}  // namespace fdp_stereo
