@@ -23,8 +23,10 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("IMAGE", options.image, "8 or 16 bit, grey or colour")->required();
   app.add_option("-o,--output", options.output, "The image with its content moved up")->required();
   app.add_option("--shift", options.shift_px, "Everywhere, px")->capture_default_str();
-  app.add_option("--across", options.across_px, "On top at the right border, its negative at the left one, px")->capture_default_str();
-  app.add_option("--down", options.down_px, "On top at the lower border, its negative at the upper one, px")->capture_default_str();
+  app.add_option("--across", options.across_px, "On top at the right border, its negative at the left one, px")
+      ->capture_default_str();
+  app.add_option("--down", options.down_px, "On top at the lower border, its negative at the upper one, px")
+      ->capture_default_str();
 }
 
 int warpRows(const Options& options) {

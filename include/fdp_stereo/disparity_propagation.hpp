@@ -15,8 +15,9 @@ struct DisparityPropagationParams {
   bool enabled = true;
   bool image_seeds = true;  ///< spread SeedSource::kFeature too, not only other sensors' seeds
   PropagationForm form = PropagationForm::kWindow;
-  int window = 5;          ///< kWindow: W_p is window x window px, odd
-  double gamma = 10.0;     ///< eq. (11): kWindow: of |dI|_1; kSurface: of |dI| per step along the way, mean of the channels
+  int window = 5;  ///< kWindow: W_p is window x window px, odd
+  double gamma =
+      10.0;  ///< eq. (11): kWindow: of |dI|_1; kSurface: of |dI| per step along the way, mean of the channels
   double reach_px = 30.0;  ///< kSurface: way over even colour at which the weight falls to 1/e
   double strength = 0.5;   ///< kSurface: share 0..1 of the prior in the cost beside a wholly trusted seed
   double spread_px = 1.5;  ///< kSurface: distance from the surface at which the prior reaches 39 % of its height
@@ -28,8 +29,8 @@ struct DisparityPropagationParams {
 /// are integers: raw <- (raw * f + 2^15) >> 16 with f = round(2^16 (1 - w(p, q))), so that the seed's own becomes 0.
 /// Seeds outside the image or the range are passed over.
 ///
-/// The surface form gives every pixel the seed that is nearest along a way of like colour, fits a plane to each seed and
-/// those around it, and blends a prior into all costs of the pixel: raw += share * (prior(d - plane) - raw), where
+/// The surface form gives every pixel the seed that is nearest along a way of like colour, fits a plane to each seed
+/// and those around it, and blends a prior into all costs of the pixel: raw += share * (prior(d - plane) - raw), where
 /// share = strength * trust * exp(-length of the way) and prior(t) = max_raw (1 - exp(-t^2 / (2 spread^2))). It has its
 /// minimum at the real-valued surface and is flat there, so that the sub-pixel fit stays with the images.
 ///

@@ -18,15 +18,15 @@ struct FeatureMatchingParams {
   double max_ratio = 0.6;              ///< MD0 / MD1 of eq. (10); a match above is dropped
   double max_row_difference_px = 1.0;  ///< |v_p - v_q|; a rectified pair has its matches on the row
   bool mutual_check = true;            ///< p must also be the best match of q
-  double max_scale_ratio = 1.5;        ///< of the feature sizes of both views, >= 1; 0 = no check (kFastCensus has one size)
-  bool refine = true;                  ///< both coordinates by least squares on the grey patches (Lucas-Kanade)
-  int max_features = 4000;             ///< per view, strongest first
+  double max_scale_ratio = 1.5;  ///< of the feature sizes of both views, >= 1; 0 = no check (kFastCensus has one size)
+  bool refine = true;            ///< both coordinates by least squares on the grey patches (Lucas-Kanade)
+  int max_features = 4000;       ///< per view, strongest first
 };
 
 struct FeatureMatching {
-  FeatureMatches matches;    ///< sorted by (y, x) of the left position
+  FeatureMatches matches;                             ///< sorted by (y, x) of the left position
   FeatureDetector detector = FeatureDetector::kSift;  ///< the one that ran
-  std::string note;          ///< why another detector than the wanted one ran; empty otherwise
+  std::string note;                                   ///< why another detector than the wanted one ran; empty otherwise
 };
 
 /// Matches inside the disparity range that pass ratio, row, scale and mutual checks.

@@ -24,15 +24,15 @@ struct OptimizerInput {
   const CostVolume& volume;
   const StereoPair& pair;  ///< left as given, right aligned
   const Seeds& seeds;
-  const std::atomic<bool>* cancel = nullptr;  ///< set from another thread: return the best so far, soon
+  const std::atomic<bool>* cancel = nullptr;          ///< set from another thread: return the best so far, soon
   const MatchingCostParams* matching_cost = nullptr;  ///< what the volume was computed with, where it was computed
   OptimizerProgress progress;                         ///< may be empty
 };
 
 struct OptimizerOutput {
-  cv::Mat disparity_left;   ///< CV_32FC1 px, NaN = none
-  cv::Mat disparity_right;  ///< the same of the right view, or empty where the optimiser has none
-  cv::Mat confidence;       ///< CV_32FC1 0..1
+  cv::Mat disparity_left;        ///< CV_32FC1 px, NaN = none
+  cv::Mat disparity_right;       ///< the same of the right view, or empty where the optimiser has none
+  cv::Mat confidence;            ///< CV_32FC1 0..1
   std::vector<double> energies;  ///< per iteration, where there is an energy
 };
 
@@ -41,7 +41,8 @@ class Optimizer {
  public:
   virtual ~Optimizer() = default;
   virtual void optimize(const OptimizerInput& input, OptimizerOutput& output) = 0;
-  /// The largest penalty beside the data term that has to fit beside a cost into one path cost, in cost units (0 = none).
+  /// The largest penalty beside the data term that has to fit beside a cost into one path cost, in cost units (0 =
+  /// none).
   virtual double costHeadroom() const { return 0.0; }
   /// Bytes that the optimiser needs beside the volume for every cost in it.
   virtual double bytesPerCost() const { return 2.0; }

@@ -27,7 +27,7 @@ namespace fdp_stereo {
 struct PipelineParams {
   DisparityRange search;
   int threads = 0;              ///< 0 = all cores
-  double scale = 1.0;          ///< of the sides of the images that are matched; the disparity has full size again
+  double scale = 1.0;           ///< of the sides of the images that are matched; the disparity has full size again
   double max_memory_mb = 4096;  ///< a pair that would need more is refused
   FeatureMatchingParams feature_matching;
   RowAlignmentParams row_alignment;
@@ -59,8 +59,8 @@ struct ParamRef {
   std::variant<bool*, int*, double*, EnumRef> value;
   double min = 0.0;  ///< of numbers, inclusive
   double max = 0.0;
-  std::string unit;  ///< "" where there is none
-  std::string text;  ///< one sentence: the effect
+  std::string unit;      ///< "" where there is none
+  std::string text;      ///< one sentence: the effect
   std::string ros_name;  ///< name in dynamic_reconfigure
 };
 
@@ -82,7 +82,8 @@ void setParam(PipelineParams& params, const std::string& key, const std::string&
 /// "key=value".
 void setParam(PipelineParams& params, const std::string& assignment);
 
-/// Throws std::invalid_argument naming the first key whose value is outside its range, or values that exclude each other.
+/// Throws std::invalid_argument naming the first key whose value is outside its range, or values that exclude each
+/// other.
 void validate(const PipelineParams& params);
 
 /// Reads YAML (nested maps or dotted keys) over `params`; `name` is used in messages. Throws std::invalid_argument.

@@ -45,19 +45,20 @@ struct RowOffsetModel {
 /// What the stage did to one pair.
 struct RowAlignment {
   RowOffsetModel model;
-  int matches_used = 0;         ///< whose residual about the model is below three times its scatter
-  double rms_before_px = 0.0;   ///< of the row residuals of these matches as given
-  double rms_after_px = 0.0;    ///< and about the model
-  double sigma_px = 0.0;        ///< uncertainty of the model, RMS over the image
-  double offset_rms_px = 0.0;   ///< RMS of the model over the image: how far the calibration is off
-  std::string note;             ///< the model chosen, or why the identity was kept
-  std::string warning;          ///< what is wrong with the calibration and what to do; empty where nothing is
+  int matches_used = 0;        ///< whose residual about the model is below three times its scatter
+  double rms_before_px = 0.0;  ///< of the row residuals of these matches as given
+  double rms_after_px = 0.0;   ///< and about the model
+  double sigma_px = 0.0;       ///< uncertainty of the model, RMS over the image
+  double offset_rms_px = 0.0;  ///< RMS of the model over the image: how far the calibration is off
+  std::string note;            ///< the model chosen, or why the identity was kept
+  std::string warning;         ///< what is wrong with the calibration and what to do; empty where nothing is
 };
 
 /// The model that the matches support; the identity when in doubt. Never throws on degenerate matches.
 ///
-/// Fits by iteratively reweighted least squares (Geman-McClure weight, from a wide scale down to 0.35 px). An order is taken only if matches held
-/// out of the fit (five spatial folds) support it significantly, and if there are enough of them, spread over the image.
+/// Fits by iteratively reweighted least squares (Geman-McClure weight, from a wide scale down to 0.35 px). An order is
+/// taken only if matches held out of the fit (five spatial folds) support it significantly, and if there are enough of
+/// them, spread over the image.
 RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
 
 /// The right image resampled so that its rows meet the left's. Returns the image itself for the identity.
@@ -67,9 +68,9 @@ cv::Mat alignRows(const cv::Mat& right, const RowOffsetModel& model);
 /// The matches as they are between the left image and the aligned right one.
 FeatureMatches alignMatches(const FeatureMatches& matches, const RowOffsetModel& model);
 
-/// The offset field as colour over the dimmed left image (red: the right view lies too high by up to full_scale_px, blue:
-/// too low) and for each match an arrow of its row residual about the model, 40 times enlarged. CV_8UC3.
-/// left: 8U or 16U, 1 or 3 channels.
+/// The offset field as colour over the dimmed left image (red: the right view lies too high by up to full_scale_px,
+/// blue: too low) and for each match an arrow of its row residual about the model, 40 times enlarged. CV_8UC3. left: 8U
+/// or 16U, 1 or 3 channels.
 cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, const RowAlignment& alignment,
                          double full_scale_px = 1.0);
 

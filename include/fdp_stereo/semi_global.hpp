@@ -9,10 +9,10 @@ namespace fdp_stereo {
 
 /// Semi-global matching (Hirschmueller, PAMI 2008) on the cost volume.
 struct SemiGlobalParams {
-  int paths = 8;                 ///< 4 or 8
-  double p1 = 0.8;               ///< cost units: disparity changes by 1
-  double p2 = 4.0;               ///< cost units: disparity changes by more
-  double p2_gradient = 0.05;     ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
+  int paths = 8;              ///< 4 or 8
+  double p1 = 0.8;            ///< cost units: disparity changes by 1
+  double p2 = 4.0;            ///< cost units: disparity changes by more
+  double p2_gradient = 0.05;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
   SubpixelFit subpixel = SubpixelFit::kBlended;
   double uniqueness_ratio = 0.0;  ///< %, as stereo_image_proc
 };

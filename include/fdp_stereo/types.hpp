@@ -14,7 +14,8 @@ namespace fdp_stereo {
 /// A disparity that is not known. Disparity maps are CV_32FC1 in px of the left image; NaN = none.
 constexpr float kInvalidDisparity = std::numeric_limits<float>::quiet_NaN();
 
-/// Searched disparities: min .. min + count - 1 (px). Disparity d matches left (x, y) with right (x - d, y) (paper eq. 1).
+/// Searched disparities: min .. min + count - 1 (px). Disparity d matches left (x, y) with right (x - d, y) (paper eq.
+/// 1).
 struct DisparityRange {
   int min = 0;
   int count = 64;

@@ -9,7 +9,8 @@ namespace fdp_stereo {
 
 struct WinnerTakesAllParams {
   SubpixelFit subpixel = SubpixelFit::kParabola;
-  double uniqueness_ratio = 0.0;  ///< %: the best cost must be this much below the best of a disparity more than 1 px off
+  double uniqueness_ratio =
+      0.0;  ///< %: the best cost must be this much below the best of a disparity more than 1 px off
 };
 
 /// The disparity of the smallest cost, the lowest on ties, for the left view and (from the same volume) the right.

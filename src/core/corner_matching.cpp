@@ -71,7 +71,8 @@ std::vector<cv::Point> findCorners(const cv::Mat& grey, int max_features) {
   for (const cv::KeyPoint& k : keypoints) {
     const auto x = static_cast<int>(k.pt.x);
     const auto y = static_cast<int>(k.pt.y);
-    const bool inside = x >= kPatchRadius && y >= kPatchRadius && x < grey.cols - kPatchRadius && y < grey.rows - kPatchRadius;
+    const bool inside =
+        x >= kPatchRadius && y >= kPatchRadius && x < grey.cols - kPatchRadius && y < grey.rows - kPatchRadius;
     if (inside) cells[static_cast<std::size_t>(y / kCellPx) * columns + x / kCellPx].push_back(&k);
   }
   const std::size_t per_cell = std::max<std::size_t>(1, max_features / cells.size());
@@ -138,7 +139,8 @@ std::vector<CornerMatch> matchCorners(const cv::Mat& left_grey, const cv::Mat& r
                                       const FeatureMatchingParams& params) {
   const Corners left = describe(left_grey, params.max_features);
   const Corners right = describe(right_grey, params.max_features);
-  const int band = static_cast<int>(std::ceil(params.max_row_difference_px)) + 1;  // a corner is within 1 px of its point
+  const int band =
+      static_cast<int>(std::ceil(params.max_row_difference_px)) + 1;  // a corner is within 1 px of its point
   std::vector<Best> of_left(left.points.size());
   std::vector<Best> of_right(right.points.size());
   for (int i = 0; i < static_cast<int>(left.points.size()); ++i) {

@@ -53,8 +53,8 @@ std::array<std::uint32_t, 3 * 255 + 1> makeFactors(double gamma) {
 
 /// Algorithm 1 with rounded disparities.
 template <typename T>
-double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
-                        CostVolume& volume) {
+double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
+                        const DisparityPropagationParams& params, CostVolume& volume) {
   const auto factors = makeFactors(params.gamma);
   const int radius = params.window / 2;
   const int channels = left.channels();
@@ -76,11 +76,13 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
 void check(const cv::Mat& left, const DisparityPropagationParams& params, const CostVolume& volume) {
   if (left.rows != volume.height() || left.cols != volume.width() || left.depth() != CV_8U ||
       (left.channels() != 1 && left.channels() != 3)) {
-    throw std::invalid_argument("disparity propagation: the left image must be 8-bit with 1 or 3 channels and as large "
-                                "as the cost volume");
+    throw std::invalid_argument(
+        "disparity propagation: the left image must be 8-bit with 1 or 3 channels and as large "
+        "as the cost volume");
   }
   if (params.window < 1 || params.window % 2 == 0) {
-    throw std::invalid_argument("disparity propagation: window " + std::to_string(params.window) + " must be odd and >= 1");
+    throw std::invalid_argument("disparity propagation: window " + std::to_string(params.window) +
+                                " must be odd and >= 1");
   }
   if (!(params.gamma > 0.0) || !(params.reach_px > 0.0) || !(params.spread_px > 0.0)) {
     throw std::invalid_argument("disparity propagation: gamma " + std::to_string(params.gamma) + ", reach_px " +

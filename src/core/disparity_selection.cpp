@@ -20,8 +20,8 @@ void DisparitySelection::selectLeft(int x, const std::uint16_t* sums, DisparityR
   const std::uint16_t best = kernels.minimum(sums, range.count);
   const int index = kernels.find(sums, range.count, best);
   const int after = std::min(index + 2, range.count);
-  const std::uint16_t second = std::min(kernels.minimum(sums, std::max(index - 1, 0)),
-                                        kernels.minimum(sums + after, range.count - after));
+  const std::uint16_t second =
+      std::min(kernels.minimum(sums, std::max(index - 1, 0)), kernels.minimum(sums + after, range.count - after));
   confidence[x] = 1.0F - (best + 1.0F) / (second + 1.0F);
   disparity[x] = static_cast<float>(range.min + index);
   if (index > 0 && index + 1 < range.count) {

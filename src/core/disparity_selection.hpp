@@ -30,7 +30,7 @@ class DisparitySelection {
 
   SubpixelFit fit_;
   double uniqueness_ratio_;
-  std::vector<std::uint16_t> right_best_;   // from right to left
+  std::vector<std::uint16_t> right_best_;  // from right to left
   std::vector<std::uint16_t> right_index_;
 };
 

@@ -36,8 +36,8 @@ struct Smoother {
   void add(const float* d, const float* near_d, const float* pixels, const float* near_pixels, int count, float* sums,
            float* weights) const {
     FDP_STEREO_SELECT(disparitySmoothingKernels)
-        .addNeighbour(d, near_d, pixels, near_pixels, channels, width, count, inverse_difference2, inverse_gamma2,
-                      sums, weights);
+        .addNeighbour(d, near_d, pixels, near_pixels, channels, width, count, inverse_difference2, inverse_gamma2, sums,
+                      weights);
   }
 
   void addAlongRow(int y, const cv::Mat& source, float* sums, float* weights) const {
@@ -83,8 +83,9 @@ void smoothDisparity(cv::Mat& disparity, const cv::Mat& left, const DisparitySmo
   if (params.radius <= 0) return;
   const auto difference = static_cast<float>(params.max_difference_px);
   const auto gamma = static_cast<float>(params.gamma * left.channels());
-  const Smoother smoother{planarRows(left), left.cols, left.rows, left.channels(), params.radius,
-                          1.0F / (difference * difference), 1.0F / (gamma * gamma)};
+  const Smoother smoother{planarRows(left),      left.cols,     left.rows,
+                          left.channels(),       params.radius, 1.0F / (difference * difference),
+                          1.0F / (gamma * gamma)};
   cv::Mat first = disparity.clone(), second(disparity.size(), CV_32FC1);
   first.setTo(kFar, ~(disparity == disparity));  // OpenCV finds no NaN by != where it compares vectors
   smoother.run(first, second, true);

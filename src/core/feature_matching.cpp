@@ -112,7 +112,8 @@ FeatureMatches refineMatches(const FeatureMatches& matches, const cv::Mat& left,
     const cv::Point centre(cvRound(match.left.x), cvRound(match.left.y));
     const cv::Point2f start = match.right + (cv::Point2f(centre) - match.left);
     const PatchFit fit = fitPatch(left, right, centre, start);
-    if (fit.converged && fit.correlation >= kMinCorrelation) refined.push_back({cv::Point2f(centre), fit.right, match.trust});
+    if (fit.converged && fit.correlation >= kMinCorrelation)
+      refined.push_back({cv::Point2f(centre), fit.right, match.trust});
   }
   return refined;
 }
@@ -125,8 +126,9 @@ bool allowed(const FeatureMatch& match, DisparityRange range, double max_row_dif
 void sortAndUnite(FeatureMatches& matches) {
   const auto key = [](const FeatureMatch& m) { return std::make_tuple(m.left.y, m.left.x, m.right.y, m.right.x); };
   std::sort(matches.begin(), matches.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  matches.erase(std::unique(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.left == b.left; }),
-                matches.end());
+  matches.erase(
+      std::unique(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.left == b.left; }),
+      matches.end());
 }
 
 }  // namespace

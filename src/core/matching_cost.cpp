@@ -15,14 +15,17 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kMaxRhoUnits = 2047;           // rho of 64 grey levels: theta(64, 10) = 0.998
-constexpr int kUnitsPerBit = 16;             // fixed point of S_census
+constexpr int kMaxRhoUnits = 2047;  // rho of 64 grey levels: theta(64, 10) = 0.998
+constexpr int kUnitsPerBit = 16;    // fixed point of S_census
 
 bool usesColour(MatchingCostType type) { return type != MatchingCostType::kCensus; }
 bool usesCensus(MatchingCostType type) {
-  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kAdCensus || type == MatchingCostType::kCensus;
+  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kAdCensus ||
+         type == MatchingCostType::kCensus;
 }
-bool usesGradient(MatchingCostType type) { return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kRho; }
+bool usesGradient(MatchingCostType type) {
+  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kRho;
+}
 
 /// theta of eq. (5).
 double theta(double cost, double lambda) { return 1.0 - std::exp(-cost / lambda); }
@@ -49,10 +52,10 @@ void fillThetaTable(double units, double lambda, double weight, double step, int
 /// All that the loop over the rows reads.
 struct MatchingCost::Source {
   ImagePlanes left, right;
-  cv::Mat left_grey8, right_grey8;                         // of 16-bit colour images
+  cv::Mat left_grey8, right_grey8;                           // of 16-bit colour images
   std::vector<std::uint64_t> left_codes[3], right_codes[3];  // one per scale
   int scales = 0;
-  std::uint16_t bit_weights[3] = {};  // fixed-point w_i of eq. (7)
+  std::uint16_t bit_weights[3] = {};                                                    // fixed-point w_i of eq. (7)
   std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // fixed-point theta of eq. (9)
   std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
   int shift = 0;
@@ -109,7 +112,8 @@ namespace {
 
 using CostSource = MatchingCost::Source;
 
-/// right[t] = row[width - 1 - min - t], clamped into the row: entry (width - 1 - x) + i meets left x at disparity min + i.
+/// right[t] = row[width - 1 - min - t], clamped into the row: entry (width - 1 - x) + i meets left x at disparity min +
+/// i.
 template <typename T>
 void reverseRow(const T* row, int width, int min, int length, T* right) {
   for (int t = 0; t < length; ++t) right[t] = row[std::clamp(width - 1 - min - t, 0, width - 1)];
@@ -167,7 +171,8 @@ void costsOfPixel(const CostSource& source, MatchingCostType type, int y, int x,
   }
   for (int i = 0; i < source.scales; ++i) {
     const std::uint64_t code = source.left_codes[i][static_cast<std::size_t>(y) * width + x];
-    kernels.hamming(code, scratch.codes[i].data() + offset, count, source.bit_weights[i], i == 0, scratch.census.data());
+    kernels.hamming(code, scratch.codes[i].data() + offset, count, source.bit_weights[i], i == 0,
+                    scratch.census.data());
   }
   combine(kernels, source, scratch, count, volume.at<T>(y, x));
 }

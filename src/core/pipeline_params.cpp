@@ -63,9 +63,10 @@ void addPipeline(ParamList& list, PipelineParams& p) {
            "Number of disparities searched; more sees nearer things and costs time and memory.", "disparity_range");
   list.stage("pipeline");
   list.add("threads", p.threads, 0, 64, "", "Threads of one pair; 0 uses every core.", "threads");
-  list.add("scale", p.scale, 0.25, 1.0, "",
-           "Match smaller images, 0.5 = half the width and height, and enlarge the disparity along the edges of the full "
-           "image: a fraction of the time and memory, less detail.");
+  list.add(
+      "scale", p.scale, 0.25, 1.0, "",
+      "Match smaller images, 0.5 = half the width and height, and enlarge the disparity along the edges of the full "
+      "image: a fraction of the time and memory, less detail.");
   list.add("max_memory_mb", p.max_memory_mb, 16, 65536, "MB", "A pair that would need more memory is refused.",
            "max_memory_mb");
 }
@@ -136,7 +137,8 @@ void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagati
            "Matches are rejected if small windows around them find disparities that differ by more on the mean.");
   list.add("min_support", sparse.min_support, 0.0, 1.0, "",
            "Share of its neighbours that a seed must agree with; larger rejects more.");
-  list.add("tolerance_px", sparse.tolerance_px, 0.1, 10.0, "px", "Difference up to which two neighbouring seeds agree.");
+  list.add("tolerance_px", sparse.tolerance_px, 0.1, 10.0, "px",
+           "Difference up to which two neighbouring seeds agree.");
   list.add("max_slope", sparse.max_slope, 0.0, 2.0, "px/px",
            "Steepest surface: neighbouring seeds may differ by this times their distance on top.");
   list.stage("disparity_propagation");
@@ -208,7 +210,8 @@ void addLocalExpansionModel(ParamList& list, LocalExpansionParams& p) {
 void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
   list.add("initialization", p.initialization, {"random", "semi_global"}, "Where the first planes come from.");
   list.add("unary_iterations", p.unary_iterations, 0, 100, "", "First rounds that leave out the smoothness term.");
-  list.add("iterations", p.iterations, 0, 100, "", "Rounds of expansion moves; more lower the energy a little further.");
+  list.add("iterations", p.iterations, 0, 100, "",
+           "Rounds of expansion moves; more lower the energy a little further.");
   list.add("fine_cell", p.fine_cell, 0.1, 100.0, "%", "Side of a cell of the fine layer, in percent of the width.");
   list.add("middle_cell", p.middle_cell, 0.1, 100.0, "%", "Side of a cell of the middle layer.");
   list.add("coarse_cell", p.coarse_cell, 0.1, 100.0, "%", "Side of a cell of the coarse layer.");
@@ -219,9 +222,11 @@ void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
            "Random planes start within range / 2^(1 + this) of the current one; smaller searches wider.");
   list.add("ransac_threshold_px", p.ransac_threshold_px, 0.01, 100.0, "px", "Distance of an inlier to a fitted plane.");
   list.add("ransac_samples", p.ransac_samples, 1, 10000, "", "Samples of three points at most.");
-  list.add("stop_gain", p.stop_gain, 0.0, 100.0, "%", "Stop when a round lowers the energy by less; 0 runs all rounds.");
+  list.add("stop_gain", p.stop_gain, 0.0, 100.0, "%",
+           "Stop when a round lowers the energy by less; 0 runs all rounds.");
   list.add("seed", p.seed, 0, 1000000, "", "Seed of the random numbers.");
-  list.add("max_time_ms", p.max_time_ms, 0.0, 1e7, "ms", "Return the best planes found after this time; 0 is no limit.");
+  list.add("max_time_ms", p.max_time_ms, 0.0, 1e7, "ms",
+           "Return the best planes found after this time; 0 is no limit.");
   list.add("warm_start", p.warm_start, "Offer the planes of the previous frame of a sequence.");
 }
 

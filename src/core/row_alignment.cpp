@@ -143,7 +143,8 @@ std::vector<double> heldOutLosses(const std::vector<Sample>& samples, int order,
 }
 
 /// Is the mean of `better` below that of `worse` by more than chance?
-bool clearlyBetter(const std::vector<Sample>& samples, const std::vector<double>& better, const std::vector<double>& worse) {
+bool clearlyBetter(const std::vector<Sample>& samples, const std::vector<double>& better,
+                   const std::vector<double>& worse) {
   double weights = 0.0;
   double mean = 0.0;
   double mean_worse = 0.0;
@@ -210,7 +211,8 @@ Choice chooseOrder(const std::vector<Sample>& samples, cv::Size size, const RowA
     if (!automatic && order != static_cast<int>(params.model) - 1) continue;
     if (static_cast<int>(samples.size()) < kMinMatches[order]) break;
     const Fit fit = fitOrder(samples, order);
-    if (!fit.ok || rmsOverImage(fit.covariance, size) > kMaxSigmaPx || shareWithinScale(samples, fit) < kMinShare) continue;
+    if (!fit.ok || rmsOverImage(fit.covariance, size) > kMaxSigmaPx || shareWithinScale(samples, fit) < kMinShare)
+      continue;
     const std::vector<double> losses = heldOutLosses(samples, order, fit);
     if (!clearlyBetter(samples, losses, best)) continue;
     choice.order = order;
@@ -256,7 +258,8 @@ void describe(const RowAlignmentParams& params, const Choice& choice, RowAlignme
     result.note = "identity: matches held out of the fit do not support an offset";
   }
   if (result.offset_rms_px > params.warn_px) {
-    result.warning = "the rows of the views are off by " + px(result.offset_rms_px) + " RMS: calibrate the cameras anew";
+    result.warning =
+        "the rows of the views are off by " + px(result.offset_rms_px) + " RMS: calibrate the cameras anew";
   }
 }
 
@@ -316,7 +319,8 @@ bool RowAlignmentAccumulator::contradicts(const FeatureMatches& matches) const {
   return now > before + kJump;
 }
 
-RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params) {
+RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::Size size,
+                                             const RowAlignmentParams& params) {
   if (params.mode == RowAlignmentMode::kPerFrame || size != last_.size || contradicts(matches)) history_.clear();
   for (Aged& aged : history_) aged.weight *= params.forgetting;
   history_.erase(std::remove_if(history_.begin(), history_.end(), [](const Aged& a) { return a.weight < kForgotten; }),

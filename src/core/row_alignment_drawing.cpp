@@ -32,8 +32,7 @@ cv::Vec3b tint(const cv::Vec3b& pixel, double share) {
   const double strength = 127.0 * std::clamp(std::abs(share), 0.0, 1.0);
   const double red = share > 0.0 ? strength : 0.0;
   const double blue = share > 0.0 ? 0.0 : strength;
-  return {cv::saturate_cast<uchar>(grey + blue), cv::saturate_cast<uchar>(grey),
-          cv::saturate_cast<uchar>(grey + red)};
+  return {cv::saturate_cast<uchar>(grey + blue), cv::saturate_cast<uchar>(grey), cv::saturate_cast<uchar>(grey + red)};
 }
 
 void drawArrow(cv::Mat& picture, const FeatureMatch& match, const RowOffsetModel& model) {
@@ -64,7 +63,8 @@ cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, con
   for (const FeatureMatch& match : matches) drawArrow(picture, match, alignment.model);
   const std::string text = alignment.note;
   cv::putText(picture, text, {6, picture.rows - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar::all(0), 3, cv::LINE_AA);
-  cv::putText(picture, text, {6, picture.rows - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar::all(255), 1, cv::LINE_AA);
+  cv::putText(picture, text, {6, picture.rows - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar::all(255), 1,
+              cv::LINE_AA);
   return picture;
 }
 

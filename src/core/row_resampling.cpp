@@ -11,8 +11,8 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kPhases = 64;     // positions between two rows that have weights of their own
-constexpr int kBlockPx = 8;     // columns that share one offset: it changes by a few px over a whole image
+constexpr int kPhases = 64;  // positions between two rows that have weights of their own
+constexpr int kBlockPx = 8;  // columns that share one offset: it changes by a few px over a whole image
 constexpr int kReach = kResamplingTaps / 2;
 
 using Weights = std::array<std::int32_t, kResamplingTaps>;

@@ -18,7 +18,8 @@ constexpr int kMaxPerCell = 24;
 
 SeedGrid::SeedGrid(const Seeds& seeds, cv::Size image) : seeds_(seeds) {
   const double area = static_cast<double>(image.area());
-  cell_px_ = static_cast<float>(std::max(1.0, std::sqrt(area * kSeedsPerCell / std::max(1.0, static_cast<double>(seeds.size())))));
+  cell_px_ = static_cast<float>(
+      std::max(1.0, std::sqrt(area * kSeedsPerCell / std::max(1.0, static_cast<double>(seeds.size())))));
   columns_ = static_cast<int>(static_cast<float>(image.width) / cell_px_) + 1;
   rows_ = static_cast<int>(static_cast<float>(image.height) / cell_px_) + 1;
   begin_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);

@@ -9,8 +9,8 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kRing = 7;                      // px from the seed to the outermost windows
-constexpr int kWindowRadius = 1;              // windows of 3 x 3 px: larger ones hold on to the edge
+constexpr int kRing = 7;          // px from the seed to the outermost windows
+constexpr int kWindowRadius = 1;  // windows of 3 x 3 px: larger ones hold on to the edge
 constexpr int kSearchPx = 14;
 constexpr int kRadius = kRing + kWindowRadius;
 constexpr int kSide = 2 * kRadius + 1;

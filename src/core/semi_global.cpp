@@ -100,7 +100,9 @@ class Sweep {
 
  private:
   std::size_t slotIndex(int path, int x) const { return static_cast<std::size_t>(path - 1) * width_ + x; }
-  T* slot(int buffer, int path, int x) { return rows_[buffer].data() + slotIndex(path, x) * slot_ + CostVolume::kPadding; }
+  T* slot(int buffer, int path, int x) {
+    return rows_[buffer].data() + slotIndex(path, x) * slot_ + CostVolume::kPadding;
+  }
 
   void connect(int path, const T* before, T smallest, int difference, PathStep<T>& step) const {
     step.before[path] = before;
@@ -170,8 +172,8 @@ struct SemiGlobal::Workspace {
                    DisparitySelection(params.subpixel, params.uniqueness_ratio)} {}
 
   template <typename T>
-  void optimize(const OptimizerInput& input, const SemiGlobalParams& params,
-                std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output);
+  void optimize(const OptimizerInput& input, const SemiGlobalParams& params, std::array<SweepBuffers<T>, 2>& buffers,
+                OptimizerOutput& output);
 };
 
 /// Both sweeps start at their end of the image and store sums up to the middle; then each goes on over the rows of

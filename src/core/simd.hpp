@@ -16,18 +16,26 @@ void limitSimdLevel(SimdLevel level);
 /// Picks one of the compiled forms of a kernel table, e.g.
 ///   FDP_STEREO_SELECT(semiGlobalKernels)  ->  avx2::semiGlobalKernels() or baseline::semiGlobalKernels()
 #ifdef FDP_STEREO_HAVE_X86_KERNELS
-#define FDP_STEREO_SELECT(function)                                               \
+#define FDP_STEREO_SELECT(function)                                                   \
   (::fdp_stereo::simdLevel() == ::fdp_stereo::SimdLevel::kAvx512 ? avx512::function() \
    : ::fdp_stereo::simdLevel() == ::fdp_stereo::SimdLevel::kAvx2 ? avx2::function()   \
                                                                  : baseline::function())
-#define FDP_STEREO_DECLARE_KERNELS(Table, function)          \
-  namespace baseline { const Table& function(); }            \
-  namespace avx2 { const Table& function(); }                \
-  namespace avx512 { const Table& function(); }
+#define FDP_STEREO_DECLARE_KERNELS(Table, function) \
+  namespace baseline {                              \
+  const Table& function();                          \
+  }                                                 \
+  namespace avx2 {                                  \
+  const Table& function();                          \
+  }                                                 \
+  namespace avx512 {                                \
+  const Table& function();                          \
+  }
 #else
 #define FDP_STEREO_SELECT(function) baseline::function()
 #define FDP_STEREO_DECLARE_KERNELS(Table, function) \
-  namespace baseline { const Table& function(); }
+  namespace baseline {                              \
+  const Table& function();                          \
+  }
 #endif
 
 }  // namespace fdp_stereo

@@ -15,9 +15,12 @@ float subpixelOffset(SubpixelFit fit, float before, float best, float after) {
   const float sign = rise_before < rise_after ? -1.0F : 1.0F;
   const float t = smaller / larger;
   switch (fit) {
-    case SubpixelFit::kParabola: return sign * 0.5F * (larger - smaller) / (larger + smaller);
-    case SubpixelFit::kEquiangular: return sign * 0.5F * (1.0F - t);
-    default: return sign * (0.5F - 0.25F * (t + t * t));
+    case SubpixelFit::kParabola:
+      return sign * 0.5F * (larger - smaller) / (larger + smaller);
+    case SubpixelFit::kEquiangular:
+      return sign * 0.5F * (1.0F - t);
+    default:
+      return sign * (0.5F - 0.25F * (t + t * t));
   }
 }
 

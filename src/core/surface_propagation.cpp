@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kRounds = 2;
 constexpr float kFar = 1e9F;
-constexpr int kCellPx = 2;           // ways are sought on cells of this size
+constexpr int kCellPx = 2;  // ways are sought on cells of this size
 constexpr int kMaxNeighbours = 12;
 constexpr int kPhases = 8;           // of the prior between two disparities
 constexpr float kFarthest = 4.0F;    // way beyond which a seed has no say

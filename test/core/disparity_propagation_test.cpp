@@ -215,7 +215,8 @@ TEST(SurfacePropagation, PlaneSurvivesAWrongNeighbour) {
   const cv::Mat left(96, 96, CV_8UC1, cv::Scalar(60));
   Seeds seeds;
   for (int y = 8; y < 96; y += 16) {
-    for (int x = 8; x < 96; x += 16) seeds.push_back(seedAt(static_cast<float>(x), static_cast<float>(y), 5.0F + 0.1F * static_cast<float>(x)));
+    for (int x = 8; x < 96; x += 16)
+      seeds.push_back(seedAt(static_cast<float>(x), static_cast<float>(y), 5.0F + 0.1F * static_cast<float>(x)));
   }
   seeds[14].d += 9.0F;  // neighbour of seed 15
   const SeedPlane plane = fitPlanes(seeds, spreadSeeds(seeds, left, 10.0, 30.0))[15];
@@ -273,7 +274,8 @@ TEST(SurfacePropagation, ThreadsAndInstructionSetsAgree) {
   cv::Mat left(61, 83, CV_8UC3);
   rng.fill(left, cv::RNG::UNIFORM, 0, 80);
   Seeds seeds;
-  for (int i = 0; i < 50; ++i) seeds.push_back(seedAt(rng.uniform(0.0F, 82.0F), rng.uniform(0.0F, 60.0F), rng.uniform(0.0F, 20.0F)));
+  for (int i = 0; i < 50; ++i)
+    seeds.push_back(seedAt(rng.uniform(0.0F, 82.0F), rng.uniform(0.0F, 60.0F), rng.uniform(0.0F, 20.0F)));
   const auto run = [&] {
     CostVolume volume = constantVolume(left.size(), {0, 21}, CostVolume::Depth::kU8, 120);
     propagateDisparity(seeds, left, surfaceParams(), volume);
@@ -299,7 +301,8 @@ TEST(SurfacePropagation, OddInput) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 1), cv::Size(1, 9)}) {
     const cv::Mat left(size, CV_8UC1, cv::Scalar(60));
     CostVolume volume = constantVolume(size, {0, 1}, CostVolume::Depth::kU8, 120);
-    EXPECT_GT(propagateDisparity({seedAt(0, 0, 0), seedAt(0, 0, 0), seedAt(50, 0, 0)}, left, surfaceParams(), volume), 0.0);
+    EXPECT_GT(propagateDisparity({seedAt(0, 0, 0), seedAt(0, 0, 0), seedAt(50, 0, 0)}, left, surfaceParams(), volume),
+              0.0);
     DisparityPropagationParams params = surfaceParams();
     params.reach_px = 0.0;
     EXPECT_THROW(propagateDisparity({}, left, params, volume), std::invalid_argument);

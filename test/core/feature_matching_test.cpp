@@ -32,7 +32,8 @@ StereoPair shifted(double disparity, double row, int channels = 1) {
   StereoPair pair;
   const auto cut = [&](double dx, double dy) {
     cv::Mat out;
-    cv::getRectSubPix(source, cv::Size(240, 160), cv::Point2f(160.0F + static_cast<float>(dx), 100.0F + static_cast<float>(dy)), out);
+    cv::getRectSubPix(source, cv::Size(240, 160),
+                      cv::Point2f(160.0F + static_cast<float>(dx), 100.0F + static_cast<float>(dy)), out);
     if (channels == 3) cv::cvtColor(out, out, cv::COLOR_GRAY2BGR);
     return out;
   };
@@ -125,7 +126,8 @@ TEST_P(EachDetector, RepeatsItself) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Detectors, EachDetector,
-                         ::testing::Values(FeatureDetector::kSift, FeatureDetector::kOrb, FeatureDetector::kFastCensus));
+                         ::testing::Values(FeatureDetector::kSift, FeatureDetector::kOrb,
+                                           FeatureDetector::kFastCensus));
 
 TEST(FeatureMatching, StricterRatioKeepsFewer) {
   StereoPair pair = shifted(9.0, 0.0);

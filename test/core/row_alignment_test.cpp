@@ -35,8 +35,8 @@ FeatureMatches makeMatches(const Field& field, int count, double outliers, doubl
     m.left = {rng.uniform(40.0F, 639.0F), rng.uniform(0.0F, 479.0F)};
     m.right.x = m.left.x - rng.uniform(0.0F, 40.0F);
     const bool wrong = rng.uniform(0.0, 1.0) < outliers;
-    const double dv = wrong ? rng.uniform(-4.0, 4.0)
-                            : field(u(m.right.x, kSize), v(m.left.y, kSize)) + rng.gaussian(noise_px);
+    const double dv =
+        wrong ? rng.uniform(-4.0, 4.0) : field(u(m.right.x, kSize), v(m.left.y, kSize)) + rng.gaussian(noise_px);
     m.right.y = m.left.y - static_cast<float>(dv);
     matches.push_back(m);
   }
@@ -272,7 +272,8 @@ TEST(RowAlignmentAccumulator, FewMatchesPerFrameAddUp) {
 
 TEST(RowAlignmentAccumulator, StartsAnewWhenTheCamerasMove) {
   RowAlignmentAccumulator stream;
-  for (int frame = 0; frame < 10; ++frame) stream.update(makeMatches(kWarps[0].field, 150, 0.2, 0.1, frame), kSize, accumulate());
+  for (int frame = 0; frame < 10; ++frame)
+    stream.update(makeMatches(kWarps[0].field, 150, 0.2, 0.1, frame), kSize, accumulate());
   const Field moved = [](double x, double) { return -0.7 + 0.5 * x; };
   const RowAlignment first = stream.update(makeMatches(moved, 150, 0.2, 0.1, 50), kSize, accumulate());
   EXPECT_LT(fieldError(first.model, moved, kSize), 0.05) << first.note;
@@ -319,7 +320,7 @@ TEST(RowAlignment, PictureShowsOffsetsAndResiduals) {
   const cv::Mat field = drawRowAlignment(left, {}, result);
   ASSERT_EQ(field.type(), CV_8UC3);
   ASSERT_EQ(field.size(), kSize);
-  const auto left_side = field.at<cv::Vec3b>(240, 5);    // -1.7 px: blue
+  const auto left_side = field.at<cv::Vec3b>(240, 5);     // -1.7 px: blue
   const auto right_side = field.at<cv::Vec3b>(240, 634);  // 1.1 px: red
   EXPECT_GT(left_side[0], left_side[2]);
   EXPECT_GT(right_side[2], right_side[0]);

@@ -93,7 +93,8 @@ TEST(SparseDisparity, ExternalSeedsAnswerToTheirNeighbours) {
   Seeds external;
   for (int y = 5; y < 120; y += 10) {  // a slanted plane, which the images know nothing of
     for (int x = 5; x < 160; x += 10) {
-      external.push_back(externalAt(static_cast<float>(x), static_cast<float>(y), 5.0F + 0.05F * static_cast<float>(x)));
+      external.push_back(
+          externalAt(static_cast<float>(x), static_cast<float>(y), 5.0F + 0.05F * static_cast<float>(x)));
     }
   }
   const std::size_t right = external.size();

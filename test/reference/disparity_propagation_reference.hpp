@@ -35,7 +35,8 @@ inline void propagateWindow(Seeds seeds, const cv::Mat& left, int window, double
         const double weight = std::exp(-colours / gamma);
         const double factor = std::round((1.0 - weight) * 65536.0);
         const int index = d - volume.range().min;
-        volume.setRaw(y, x, index, static_cast<int>(std::floor((volume.raw(y, x, index) * factor + 32768.0) / 65536.0)));
+        volume.setRaw(y, x, index,
+                      static_cast<int>(std::floor((volume.raw(y, x, index) * factor + 32768.0) / 65536.0)));
       }
     }
   }

@@ -23,10 +23,14 @@ void absoluteDifferencesOf(const std::int16_t* __restrict left, const std::int16
 void absoluteDifferences(const std::int16_t* left, const std::int16_t* right, int planes, int plane_stride, int count,
                          std::uint16_t limit, std::uint16_t* sums) {
   switch (planes) {
-    case 1: return absoluteDifferencesOf<1>(left, right, plane_stride, count, limit, sums);
-    case 2: return absoluteDifferencesOf<2>(left, right, plane_stride, count, limit, sums);
-    case 3: return absoluteDifferencesOf<3>(left, right, plane_stride, count, limit, sums);
-    default: return absoluteDifferencesOf<5>(left, right, plane_stride, count, limit, sums);
+    case 1:
+      return absoluteDifferencesOf<1>(left, right, plane_stride, count, limit, sums);
+    case 2:
+      return absoluteDifferencesOf<2>(left, right, plane_stride, count, limit, sums);
+    case 3:
+      return absoluteDifferencesOf<3>(left, right, plane_stride, count, limit, sums);
+    default:
+      return absoluteDifferencesOf<5>(left, right, plane_stride, count, limit, sums);
   }
 }
 
@@ -36,7 +40,9 @@ void birchfieldTomasi(const std::int16_t* __restrict left, const std::int16_t* _
   const std::int16_t* __restrict smallest = right + plane_stride;
   const std::int16_t* __restrict largest = right + 2 * plane_stride;
   for (int i = 0; i < count; ++i) {
-    const int to_right = left[0] > largest[i] ? left[0] - largest[i] : smallest[i] > left[0] ? smallest[i] - left[0] : 0;
+    const int to_right = left[0] > largest[i]    ? left[0] - largest[i]
+                         : smallest[i] > left[0] ? smallest[i] - left[0]
+                                                 : 0;
     const int to_left = value[i] > left[2] ? value[i] - left[2] : left[1] > value[i] ? left[1] - value[i] : 0;
     const int cost = to_right < to_left ? to_right : to_left;
     sums[i] = static_cast<std::uint16_t>(cost < limit ? cost : limit);

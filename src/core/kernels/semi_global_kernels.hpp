@@ -12,12 +12,12 @@ namespace fdp_stereo {
 /// Path cost arrays hold `count` entries with one readable guard entry on both sides.
 template <typename T>
 struct PathStep {
-  const T* costs;              ///< raw matching costs
-  const T* before[4];          ///< path costs of the predecessors
-  T* after[4];                 ///< path costs of this pixel
-  T smallest_before[4];        ///< smallest path cost of each predecessor
-  T jump[4];                   ///< that + P2
-  T smallest_after[4];         ///< of this pixel, written
+  const T* costs;        ///< raw matching costs
+  const T* before[4];    ///< path costs of the predecessors
+  T* after[4];           ///< path costs of this pixel
+  T smallest_before[4];  ///< smallest path cost of each predecessor
+  T jump[4];             ///< that + P2
+  T smallest_after[4];   ///< of this pixel, written
   T p1;
 };
 
