@@ -9,7 +9,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 
 build_packages=(
-  g++ cmake ninja-build git
+  g++ cmake ninja-build git dpkg-dev file
   libopencv-dev libeigen3-dev libyaml-cpp-dev libcli11-dev
   catkin libroscpp-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools libimage-transport-dev libcv-bridge-dev
   libimage-geometry-dev libstereo-msgs-dev libsensor-msgs-dev libmessage-filters-dev libtf2-ros-dev
