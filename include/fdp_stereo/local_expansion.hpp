@@ -38,11 +38,12 @@ struct LocalExpansionParams {
   int margin_px = 5;             ///< a plane is invalid at a pixel if it leaves the range within this distance
   // The search.
   PlaneInitialization initialization = PlaneInitialization::kSemiGlobal;
-  int unary_iterations = 0;  ///< first rounds without smoothness: a pixel takes what lowers its own cost
-  int iterations = 5;        ///< rounds of expansion moves
-  double fine_cell = 1.0;    ///< % of the image width
-  double middle_cell = 3.0;  ///< % of the image width
-  double coarse_cell = 9.0;  ///< % of the image width
+  int unary_iterations = 0;    ///< first rounds without smoothness: a pixel takes what lowers its own cost
+  int iterations = 5;          ///< rounds of expansion moves
+  double fine_cell = 1.0;      ///< % of the image width
+  double middle_cell = 3.0;    ///< % of the image width
+  double coarse_cell = 9.0;    ///< % of the image width
+  bool seed_proposals = true;  ///< offer the planes of the triangulated seeds
   PlaneProposals fine = {1, 1, 2};
   PlaneProposals middle = {2, 1, 1};
   PlaneProposals coarse = {2, 1, 1};

@@ -65,6 +65,7 @@ class Run {
     } else {
       view.volume = &input_.volume;
     }
+    view.seeds = seedsOf(side);
     const cv::Mat& initial = side == kLeft ? initial_.disparity_left : initial_.disparity_right;
     if (!initial.empty()) view.initial = side == kLeft ? initial : mirrored(initial);
     if (!previous.empty() && previous.size() == pair.left.size()) view.previous = &previous;
@@ -74,6 +75,16 @@ class Run {
   }
 
  private:
+  // In the coordinates of the view: the right one is mirrored.
+  std::vector<lx::SurfacePoint> seedsOf(int side) const {
+    std::vector<lx::SurfacePoint> points;
+    const float last = static_cast<float>(input_.pair.left.cols - 1);
+    for (const Seed& seed : input_.seeds) {
+      points.push_back({side == kLeft ? seed.x : last - (seed.x - seed.d), seed.y, seed.d});
+    }
+    return points;
+  }
+
   void report(int side, int round, double energy, std::vector<double>* energies) const {
     if (energies != nullptr) energies->push_back(energy);
     const int per_view = params_.unary_iterations + params_.iterations + 1;

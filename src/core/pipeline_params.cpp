@@ -215,6 +215,7 @@ void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
   list.add("fine_cell", p.fine_cell, 0.1, 100.0, "%", "Side of a cell of the fine layer, in percent of the width.");
   list.add("middle_cell", p.middle_cell, 0.1, 100.0, "%", "Side of a cell of the middle layer.");
   list.add("coarse_cell", p.coarse_cell, 0.1, 100.0, "%", "Side of a cell of the coarse layer.");
+  list.add("seed_proposals", p.seed_proposals, "Offer the planes of the triangulated seeds to the cells in them.");
   addProposals(list, "fine", p.fine);
   addProposals(list, "middle", p.middle);
   addProposals(list, "coarse", p.coarse);

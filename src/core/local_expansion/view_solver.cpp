@@ -60,6 +60,7 @@ ViewSolver::ViewSolver(const View& view, const LocalExpansionParams& params)
       guide_(makeFilterGuide(view.image, params.filter_radius_px, params.filter_epsilon)),
       cost_(*view.volume, view.range, view.steps, guide_, {params.data_scale, params.data_threshold, params.margin_px}),
       smoothness_(view.image, {params.lambda, params.tau_smooth_px, params.gamma, params.epsilon}),
+      seeds_(params.seed_proposals ? SeedPlanes(view.seeds, view.image.size()) : SeedPlanes()),
       layers_(makeLayers(params, view.image.size())),
       proposals_{params.fine, params.middle, params.coarse},
       workers_(omp_get_max_threads()) {}
@@ -92,19 +93,27 @@ void ViewSolver::initialize(Labels& labels) {
     Worker& worker = workers_[omp_get_thread_num()];
     const Cell& cell = cells[i];
     Random random({static_cast<std::uint64_t>(params_.seed), view_.number, 0, static_cast<std::uint64_t>(i)});
-    const Candidates planes = initialPlanes(cell, worker, random);
+    choose(initialPlanes(cell, worker, random), cell, worker, labels);
+  }
+}
+
+// Gives every pixel of a cell the candidate that is cheapest there.
+void ViewSolver::choose(const Candidates& planes, const Cell& cell, Worker& worker, Labels& labels) const {
+  for (std::size_t first = 0; first < planes.size(); first += kPlaneBatch) {
+    const int count = static_cast<int>(std::min<std::size_t>(kPlaneBatch, planes.size() - first));
     PlaneBatch batch;
-    for (int k = 0; k < kPlaneBatch; ++k) batch[k] = planes[std::min<std::size_t>(k, planes.size() - 1)];
+    for (int k = 0; k < kPlaneBatch; ++k) batch[k] = planes[first + std::min(k, count - 1)];
     cost_.evaluate(batch, cell.core, worker.costs);
-    int j = 0;
+    int i = 0;
     for (int y = cell.core.y; y < cell.core.y + cell.core.height; ++y) {
-      for (int x = cell.core.x; x < cell.core.x + cell.core.width; ++x, ++j) {
-        int best = 0;
-        for (int k = 1; k < kPlaneBatch; ++k) {
-          if (worker.costs.costs(k)[j] < worker.costs.costs(best)[j]) best = k;
+      for (int x = cell.core.x; x < cell.core.x + cell.core.width; ++x, ++i) {
+        const std::size_t p = labels.index(x, y);
+        for (int k = 0; k < count; ++k) {
+          const float cost = worker.costs.costs(k)[i];
+          if (first + k > 0 && cost >= labels.cost[p]) continue;
+          labels.planes.set(p, batch[k]);
+          labels.cost[p] = cost;
         }
-        labels.planes.set(labels.index(x, y), batch[best]);
-        labels.cost[labels.index(x, y)] = worker.costs.costs(best)[j];
       }
     }
   }
@@ -132,6 +141,8 @@ ViewSolver::Candidates ViewSolver::initialPlanes(const Cell& cell, Worker& worke
       planes.push_back({0.0F, 0.0F, centre_d});
     }
   }
+  Plane triangle;
+  if (seeds_.planeAt(static_cast<int>(x), static_cast<int>(y), triangle)) planes.push_back(triangle);
   if (planes.empty()) planes.push_back(randomPlane(x, y, d, kInitialMaxAngle, random));
   return planes;
 }
@@ -192,6 +203,10 @@ ViewSolver::Candidates ViewSolver::propose(int layer, const Cell& cell, int roun
     const float reach = 0.5F * tilt * static_cast<float>(view_.range.count - 1);
     planes.push_back(proposeRandom(labels, cell.core, view_.range, reach, tilt, random));
   }
+  Plane triangle;
+  const int x = cell.core.x + random.below(cell.core.width);
+  const int y = cell.core.y + random.below(cell.core.height);
+  if (seeds_.planeAt(x, y, triangle)) planes.push_back(triangle);
   return planes;
 }
 

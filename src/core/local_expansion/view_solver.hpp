@@ -14,6 +14,7 @@
 #include "local_expansion/layers.hpp"
 #include "local_expansion/plane_cost.hpp"
 #include "local_expansion/proposers.hpp"
+#include "local_expansion/seed_planes.hpp"
 #include "local_expansion/smoothness.hpp"
 
 namespace fdp_stereo::local_expansion {
@@ -38,7 +39,7 @@ struct View {
   DisparityRange range;
   int steps = 1;                     ///< entries of the volume per px
   cv::Mat initial;                   ///< CV_32FC1 disparities (NaN = none) to start from, or empty
-  std::vector<SurfacePoint> seeds;   ///< sparse disparities
+  std::vector<SurfacePoint> seeds;   ///< sparse disparities, real-valued positions
   const Labels* previous = nullptr;  ///< planes of the previous frame, or null
   std::uint64_t number = 0;          ///< keeps the random numbers of the views apart
 };
@@ -59,6 +60,7 @@ class ViewSolver {
 
   void initialize(Labels& labels);
   Candidates initialPlanes(const Cell& cell, Worker& worker, Random& random) const;
+  void choose(const Candidates& planes, const Cell& cell, Worker& worker, Labels& labels) const;
   bool round(int number, bool unary_only, const StopCondition& stop, Labels& labels);
   bool visitLayer(int layer, int round, bool unary_only, const StopCondition& stop, Labels& labels);
   void visitCell(int layer, const Cell& cell, int round, bool unary_only, Worker& worker, Labels& labels) const;
@@ -69,6 +71,7 @@ class ViewSolver {
   FilterGuide guide_;
   PlaneCost cost_;
   Smoothness smoothness_;
+  SeedPlanes seeds_;
   std::vector<Layer> layers_;
   std::vector<PlaneProposals> proposals_;  // per layer
   std::vector<Worker> workers_;            // per thread
