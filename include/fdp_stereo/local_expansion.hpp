@@ -30,7 +30,7 @@ struct LocalExpansionParams {
   double tau_smooth_px = 1.0;    ///< truncation of the plane distance psi_pq
   double gamma = 10.0;           ///< w_pq = max(epsilon, exp(-|I_p - I_q|_1 / gamma))
   double epsilon = 0.01;         ///< smallest w_pq
-  double data_scale = 1.0;       ///< factor of the matching cost
+  double data_scale = 0.5;       ///< factor of the matching cost, so that the largest is about 1
   double data_threshold = 0.5;   ///< truncation of the matching cost, after data_scale
   int disparity_steps = 1;       ///< costs per px of disparity; above 1 the matching cost is computed anew between them
   int filter_radius_px = 10;     ///< box radius of the guided filter over the slanted window
