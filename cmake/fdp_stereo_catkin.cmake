@@ -7,5 +7,5 @@ generate_dynamic_reconfigure_options(cfg/Disparity.cfg)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES fdp_stereo_core
-  CATKIN_DEPENDS dynamic_reconfigure nodelet roscpp sensor_msgs stereo_msgs
+  CATKIN_DEPENDS dynamic_reconfigure geometry_msgs nodelet roscpp sensor_msgs stereo_msgs
   DEPENDS EIGEN3 OpenCV)
