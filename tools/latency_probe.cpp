@@ -68,6 +68,10 @@ class Probe {
   }
 
   void report() const {
+    if (ages_ms_.empty()) {
+      std::printf("output: no pair in this time\n");
+      return;
+    }
     const double age = percentile(ages_ms_, 0.95);
     const double processing = percentile(processing_ms_, 0.95);
     const double bound = processing + 1e3 / rate_hz_ + 10.0;
