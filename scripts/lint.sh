@@ -15,7 +15,8 @@ sources() { git ls-files -- 'include/*.hpp' 'src/*.[ch]pp' 'tools/*.[ch]pp' 'ben
 lint_format() { sources | xargs clang-format --dry-run --Werror; }
 lint_shell() { git ls-files -- 'scripts/*.sh' .ci/run | xargs shellcheck -x; }
 lint_catkin() { catkin_lint -W2 .; }
-lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet; }
+lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet \
+  --header-filter="$FDP_STEREO_ROOT/(include|src|tools)/.*"; }
 
 case "${1:-all}" in
   format | shell | catkin | tidy) "lint_$1" ;;

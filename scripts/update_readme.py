@@ -98,9 +98,9 @@ def main():
     arguments = parser.parse_args()
     os.chdir(ROOT)
     make_picture()
+    results = "\n".join(["<!-- results -->"] + make_results(arguments.data, arguments.presets) + ["<!-- /results -->"])
     with open("README.md") as file:
         text = file.read()
-    results = "\n".join(["<!-- results -->"] + make_results(arguments.data, arguments.presets) + ["<!-- /results -->"])
     with open("README.md", "w") as file:
         file.write(re.sub("<!-- results -->.*<!-- /results -->", lambda _: results, text, flags=re.S))
 

@@ -331,7 +331,7 @@ RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::
   }
   std::vector<Sample> samples;
   for (const Aged& aged : history_) samples.push_back(makeSample(aged.match, aged.weight, size));
-  const RowAlignment result = estimate(samples, size, params);
+  RowAlignment result = estimate(samples, size, params);
   last_ = result.model;
   return result;
 }

@@ -130,7 +130,7 @@ std::vector<fs::path> subFolders(const fs::path& folder) {
 }
 
 cv::Mat readMask(const std::string& path) {
-  const cv::Mat mask = readImage(path);
+  cv::Mat mask = readImage(path);
   if (mask.type() != CV_8UC1) throw std::runtime_error(path + ": a mask must be an 8-bit grey image");
   return mask;
 }

@@ -59,8 +59,9 @@ TEST_P(PlaneCostCases, CroppedFilterIsTheWholeImageFilter) {
   batch[2] = {-0.11F, 0.02F, middle + 0.7F};
   batch[3] = {0.3F, 0.2F, static_cast<float>(c.min)};
   PlaneCostBuffers buffers;
-  for (const cv::Rect& wanted : {cv::Rect(0, 0, c.width, c.height), cv::Rect(3, 2, 5, 4), cv::Rect(c.width - 2, 0, 2, 3),
-                                 cv::Rect(0, c.height - 1, c.width, 1), cv::Rect(c.width / 2, c.height / 2, 1, 1)}) {
+  for (const cv::Rect& wanted :
+       {cv::Rect(0, 0, c.width, c.height), cv::Rect(3, 2, 5, 4), cv::Rect(c.width - 2, 0, 2, 3),
+        cv::Rect(0, c.height - 1, c.width, 1), cv::Rect(c.width / 2, c.height / 2, 1, 1)}) {
     const cv::Rect target = wanted & cv::Rect(0, 0, c.width, c.height);
     if (target.empty()) continue;
     cost.evaluate(batch, target, buffers);
@@ -84,14 +85,13 @@ TEST_P(PlaneCostCases, CroppedFilterIsTheWholeImageFilter) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Sizes, PlaneCostCases,
-    testing::Values(Case{31, 23, 16, 0, 1, 4, CV_8UC3, CostVolume::Depth::kU8},
-                    Case{40, 33, 9, -3, 4, 3, CV_8UC3, CostVolume::Depth::kU16},
-                    Case{17, 29, 20, 2, 2, 10, CV_8UC1, CostVolume::Depth::kU8},
-                    Case{9, 1, 5, 0, 1, 2, CV_8UC3, CostVolume::Depth::kU16},
-                    Case{12, 7, 1, 4, 1, 3, CV_8UC3, CostVolume::Depth::kU8},
-                    Case{14, 15, 33, 0, 1, 1, CV_8UC3, CostVolume::Depth::kU8}));
+INSTANTIATE_TEST_SUITE_P(Sizes, PlaneCostCases,
+                         testing::Values(Case{31, 23, 16, 0, 1, 4, CV_8UC3, CostVolume::Depth::kU8},
+                                         Case{40, 33, 9, -3, 4, 3, CV_8UC3, CostVolume::Depth::kU16},
+                                         Case{17, 29, 20, 2, 2, 10, CV_8UC1, CostVolume::Depth::kU8},
+                                         Case{9, 1, 5, 0, 1, 2, CV_8UC3, CostVolume::Depth::kU16},
+                                         Case{12, 7, 1, 4, 1, 3, CV_8UC3, CostVolume::Depth::kU8},
+                                         Case{14, 15, 33, 0, 1, 1, CV_8UC3, CostVolume::Depth::kU8}));
 
 TEST(PlaneCost, EveryInstructionSetGivesTheSameBits) {
   const cv::Mat image = randomImage(60, 50, CV_8UC3, 1);

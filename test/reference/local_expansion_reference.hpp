@@ -66,8 +66,7 @@ inline std::vector<double> guidedFilter(const cv::Mat& guide, const std::vector<
       const double n = w.area();
       mean /= n;
       mean_value /= n;
-      const Eigen::Matrix3d covariance =
-          square / n - mean * mean.transpose() + epsilon * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d covariance = square / n - mean * mean.transpose() + epsilon * Eigen::Matrix3d::Identity();
       slopes[y * width + x] = covariance.inverse() * (product / n - mean_value * mean);
       offsets[y * width + x] = mean_value - slopes[y * width + x].dot(mean);
     }

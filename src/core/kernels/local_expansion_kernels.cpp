@@ -355,8 +355,8 @@ void moveTerms(const MoveTask& task) {
 }  // namespace
 
 const LocalExpansionKernels& localExpansionKernels() {
-  static constexpr LocalExpansionKernels kernels = {planeCostScratch, planeCosts, keepCosts, moveTerms};
-  return kernels;
+  static constexpr LocalExpansionKernels kKernels = {planeCostScratch, planeCosts, keepCosts, moveTerms};
+  return kKernels;
 }
 
 }  // namespace FDP_STEREO_ISA
