@@ -15,11 +15,11 @@ constexpr float kFar = 1e9F;  // stands for NaN: too far from every disparity to
 /// The image with the channels of a row one after another, so that each is contiguous.
 cv::Mat planarRows(const cv::Mat& image) {
   const int channels = image.channels();
-  cv::Mat planar(image.rows, image.cols * channels, CV_32FC1);
+  cv::Mat planar(image.rows, image.cols * channels, CV_8UC1);
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < image.rows; ++y) {
     const auto* from = image.ptr<std::uint8_t>(y);
-    auto* to = planar.ptr<float>(y);
+    auto* to = planar.ptr<std::uint8_t>(y);
     for (int c = 0; c < channels; ++c) {
       for (int x = 0; x < image.cols; ++x) to[c * image.cols + x] = from[x * channels + c];
     }
@@ -33,8 +33,8 @@ struct Smoother {
   int width, height, channels, radius;
   float inverse_difference2, inverse_gamma2;
 
-  void add(const float* d, const float* near_d, const float* pixels, const float* near_pixels, int count, float* sums,
-           float* weights) const {
+  void add(const float* d, const float* near_d, const std::uint8_t* pixels, const std::uint8_t* near_pixels, int count,
+           float* sums, float* weights) const {
     FDP_STEREO_SELECT(disparitySmoothingKernels)
         .addNeighbour(d, near_d, pixels, near_pixels, channels, width, count, inverse_difference2, inverse_gamma2, sums,
                       weights);
@@ -42,7 +42,7 @@ struct Smoother {
 
   void addAlongRow(int y, const cv::Mat& source, float* sums, float* weights) const {
     const auto* d = source.ptr<float>(y);
-    const auto* pixels = image.ptr<float>(y);
+    const auto* pixels = image.ptr<std::uint8_t>(y);
     for (int u = 1; u <= std::min(radius, width - 1); ++u) {
       add(d + u, d, pixels + u, pixels, width - u, sums + u, weights + u);
       add(d, d + u, pixels, pixels + u, width - u, sums, weights);
@@ -52,7 +52,8 @@ struct Smoother {
   void addAlongColumns(int y, const cv::Mat& source, float* sums, float* weights) const {
     for (int v = std::max(y - radius, 0); v <= std::min(y + radius, height - 1); ++v) {
       if (v == y) continue;
-      add(source.ptr<float>(y), source.ptr<float>(v), image.ptr<float>(y), image.ptr<float>(v), width, sums, weights);
+      add(source.ptr<float>(y), source.ptr<float>(v), image.ptr<std::uint8_t>(y), image.ptr<std::uint8_t>(v), width,
+          sums, weights);
     }
   }
 
@@ -86,11 +87,12 @@ void smoothDisparity(cv::Mat& disparity, const cv::Mat& left, const DisparitySmo
   const Smoother smoother{planarRows(left),      left.cols,     left.rows,
                           left.channels(),       params.radius, 1.0F / (difference * difference),
                           1.0F / (gamma * gamma)};
-  cv::Mat first = disparity.clone(), second(disparity.size(), CV_32FC1);
-  first.setTo(kFar, ~(disparity == disparity));  // OpenCV finds no NaN by != where it compares vectors
-  smoother.run(first, second, true);
-  smoother.run(second, first, false);
-  first.copyTo(disparity, first < kFar);
+  const cv::Mat holes = ~(disparity == disparity);  // OpenCV finds no NaN by != where it compares vectors
+  cv::Mat halfway(disparity.size(), CV_32FC1);
+  disparity.setTo(kFar, holes);
+  smoother.run(disparity, halfway, true);
+  smoother.run(halfway, disparity, false);
+  disparity.setTo(kInvalidDisparity, holes);
 }
 
 }  // namespace fdp_stereo
