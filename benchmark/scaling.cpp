@@ -16,15 +16,16 @@
 namespace fdp_stereo {
 namespace {
 
-/// Memory that the preset may take: 110 MB and three bytes per cell of the volume.
-constexpr double kBaseMb = 110.0;
-constexpr double kBytesPerCell = 3.0;
+/// Memory that the preset may take: 110 MB and three bytes per cell of the volume, in the 2^20 bytes that peaks come in.
+constexpr double kMbPerMillionBytes = 1e6 / (1 << 20);
+constexpr double kBaseMb = 110.0 * kMbPerMillionBytes;
+constexpr double kMbPerMillionCells = 3.0 * kMbPerMillionBytes;
 
 struct Point {
   int width, height, disparities;
   double pixels() const { return 1e-6 * width * height; }  // millions
   double cells() const { return pixels() * disparities; }  // millions
-  double allowedMb() const { return kBaseMb + kBytesPerCell * cells(); }
+  double allowedMb() const { return kBaseMb + kMbPerMillionCells * cells(); }
 };
 
 constexpr std::array<Point, 10> kPoints = {{{320, 240, 32},
