@@ -16,7 +16,8 @@
 namespace fdp_stereo {
 namespace {
 
-/// Memory that the preset may take: 110 MB and three bytes per cell of the volume, in the 2^20 bytes that peaks come in.
+/// Memory that the preset may take: 110 MB and three bytes per cell of the volume, in the 2^20 bytes that peaks come
+/// in.
 constexpr double kMbPerMillionBytes = 1e6 / (1 << 20);
 constexpr double kBaseMb = 110.0 * kMbPerMillionBytes;
 constexpr double kMbPerMillionCells = 3.0 * kMbPerMillionBytes;
