@@ -78,7 +78,8 @@ def make_results(data, presets):
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE,
                             text=True).stdout.strip()
     lines = ["Share of bad pixels in % at thresholds in px of the image as given, non-occluded pixels, holes filled; Middlebury's",
-             "weights. Time of one pair and memory above what was in use before. Bold: the best of a column. Commit %s, %s."
+             "weights. Time (one run per pair; scripts/benchmark.sh takes medians) and memory above what was in use before. Bold: the "
+             "best of a column. Commit %s, %s."
              % (commit, machine())]
     for folder, heading in SETS:
         if not os.path.isdir(os.path.join(data, folder)):
