@@ -20,18 +20,23 @@ namespace {
 /// A seed on the pixel grid of image and volume.
 struct GridSeed {
   int x, y, index;
+  int order;  ///< among the seeds as given
 };
 
 /// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
-std::vector<GridSeed> onGrid(const Seeds& seeds, const CostVolume& volume) {
-  std::vector<GridSeed> grid;
+/// They live until the next call of this thread.
+const std::vector<GridSeed>& onGrid(const Seeds& seeds, const CostVolume& volume) {
+  thread_local std::vector<GridSeed> grid;  // keeps its memory
+  grid.clear();
   for (const Seed& seed : seeds) {
-    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min};
+    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min,
+                     static_cast<int>(grid.size())};
     const bool inside = g.x >= 0 && g.y >= 0 && g.x < volume.width() && g.y < volume.height();
     if (inside && g.index >= 0 && g.index < volume.range().count) grid.push_back(g);
   }
-  std::stable_sort(grid.begin(), grid.end(),
-                   [](const GridSeed& a, const GridSeed& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); });
+  std::sort(grid.begin(), grid.end(), [](const GridSeed& a, const GridSeed& b) {
+    return std::tie(a.y, a.x, a.order) < std::tie(b.y, b.x, b.order);
+  });
   return grid;
 }
 
@@ -58,7 +63,8 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
   const auto factors = makeFactors(params.gamma);
   const int radius = params.window / 2;
   const int channels = left.channels();
-  cv::Mat touched(left.size(), CV_8UC1, cv::Scalar(0));
+  thread_local std::vector<std::uint8_t> touched;  // keeps its memory
+  touched.assign(left.total(), 0);
   for (const GridSeed& seed : seeds) {
     const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
     for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
@@ -66,11 +72,11 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
         const std::uint32_t factor = factors[manhattan(centre, left.ptr<uchar>(y) + channels * x, channels)];
         T& raw = volume.at<T>(y, x)[seed.index];
         raw = static_cast<T>((raw * factor + 32768U) >> 16U);
-        touched.at<uchar>(y, x) = 1;
+        touched[static_cast<std::size_t>(y) * left.cols + x] = 1;
       }
     }
   }
-  return static_cast<double>(cv::countNonZero(touched)) / static_cast<double>(left.total());
+  return static_cast<double>(std::count(touched.begin(), touched.end(), 1)) / static_cast<double>(left.total());
 }
 
 void check(const cv::Mat& left, const DisparityPropagationParams& params, const CostVolume& volume) {
@@ -96,12 +102,13 @@ void check(const cv::Mat& left, const DisparityPropagationParams& params, const 
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           CostVolume& volume) {
   check(left, params, volume);
-  Seeds used;
+  thread_local Seeds used;  // keeps its memory
+  used.clear();
   std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(used),
                [&](const Seed& s) { return params.image_seeds || s.source != SeedSource::kFeature; });
   if (used.empty()) return 0.0;
   if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, volume);
-  const std::vector<GridSeed> grid = onGrid(used, volume);
+  const std::vector<GridSeed>& grid = onGrid(used, volume);
   return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
                                                   : propagateWindows<std::uint16_t>(grid, left, params, volume);
 }
