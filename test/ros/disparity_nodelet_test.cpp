@@ -5,6 +5,7 @@
 #include <dynamic_reconfigure/config_tools.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <opencv2/imgproc.hpp>
 
 #include "conversions.hpp"
 #include "fdp_stereo/io.hpp"
@@ -64,6 +65,50 @@ TEST(DisparityNodelet, SamplePairEqualsTheCore) {
   EXPECT_GT(valid, core.total() / 2);
   EXPECT_FLOAT_EQ(received->f, 994.978F);
   EXPECT_FLOAT_EQ(received->T, 0.193001F);
+}
+
+/// Share of the pixels of `reference` that `got` has within 1 px.
+double agreement(const cv::Mat& got, const cv::Mat& reference) {
+  const cv::Mat known = reference == reference;
+  const cv::Mat same = known & (cv::abs(got - reference) <= 1.0);
+  return static_cast<double>(cv::countNonZero(same)) / cv::countNonZero(known);
+}
+
+TEST(DisparityNodelet, AStreamOfMisalignedCamerasRecovers) {
+  Messages messages = sampleMessages();
+  messages.right_info.P[2] = messages.left_info.P[2];  // published disparities are then the matched ones
+  const cv::Mat left = decodeImage(messages.left, "").clone();
+  const cv::Mat right = decodeImage(messages.right, "").clone();
+  const cv::Mat straight = Pipeline(loadPreset("fast")).run(left, right).disparity;
+  // Rows off by 1 px in the middle, +- 0.7 px towards the corners.
+  const cv::Mat rows = (cv::Mat_<double>(2, 3) << 1.0, 0.0, 0.0, 0.001, 1.001, 0.35);
+  cv::Mat bent;
+  cv::warpAffine(right, bent, rows, right.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  const sensor_msgs::Image good_right = messages.right;
+  messages.right = test::imageMessage(bent, "bgr8");
+
+  double off = 0.0;
+  {
+    NodeletGraph graph("/bent_off", {{"disparity_range", 64}, {"row_alignment_enabled", false}});
+    const auto received = graph.process(messages, 60.0);
+    ASSERT_TRUE(received);
+    off = agreement(pixels(received->image), straight);
+  }
+  EXPECT_LT(off, 0.8) << "the stream is not misaligned enough to show anything";
+
+  // Straight at first, so that the estimate has to let go of what it knew.
+  NodeletGraph graph("/bent", {{"disparity_range", 64}, {"row_alignment_mode", 1}});
+  Messages straight_messages = messages;
+  straight_messages.right = good_right;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(graph.process(straight_messages, 60.0));
+  double on = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    const auto received = graph.process(messages, 60.0);
+    ASSERT_TRUE(received);
+    on = agreement(pixels(received->image), straight);
+  }
+  EXPECT_GT(on, 0.93);
+  EXPECT_GT(on, off + 0.1);
 }
 
 TEST(DisparityNodelet, SubscribesOnlyWhileSomebodyListens) {
