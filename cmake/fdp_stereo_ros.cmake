@@ -19,7 +19,9 @@ add_dependencies(fdp_stereo_nodelet ${PROJECT_NAME}_gencfg)
 target_include_directories(fdp_stereo_nodelet PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src/ros>)
 target_include_directories(fdp_stereo_nodelet SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(fdp_stereo_nodelet PUBLIC fdp_stereo_core ${catkin_LIBRARIES} PRIVATE OpenMP::OpenMP_CXX)
-target_link_options(fdp_stereo_nodelet PRIVATE -Wl,--no-undefined)
+if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize") # whose symbols clang leaves to the executable
+  target_link_options(fdp_stereo_nodelet PRIVATE -Wl,--no-undefined)
+endif()
 
 # The same as a plain node.
 add_executable(disparity_node src/ros/disparity_node.cpp)
