@@ -33,6 +33,12 @@ endforeach()
 
 add_test(NAME docs_site_builds COMMAND ${PROJECT_SOURCE_DIR}/scripts/docs.sh)
 set_tests_properties(docs_site_builds PROPERTIES LABELS docs)
+if(FDP_STEREO_ROS)
+  add_test(NAME install_space_test COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/install/install_test.py)
+  set_tests_properties(install_space_test PROPERTIES LABELS install
+    ENVIRONMENT "FDP_STEREO_BUILD=${PROJECT_BINARY_DIR};FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
+endif()
+
 add_test(NAME docs_parameters_are_current
   COMMAND sh -c "$<TARGET_FILE:parameters_doc> | diff ${PROJECT_SOURCE_DIR}/docs/parameters.md -")
 set_tests_properties(docs_parameters_are_current PROPERTIES LABELS docs)

@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The install space: programs, the nodelet in the demo's graph, and an outside package that links the core."""
+import os
+import re
+import socket
+import subprocess
+import tempfile
+import unittest
+
+BUILD = os.environ["FDP_STEREO_BUILD"]
+SOURCE = os.environ["FDP_STEREO_SOURCE"]
+CLEAN = {"PATH": "/usr/bin:/bin", "HOME": tempfile.gettempdir(), "LANG": "C.UTF-8"}
+
+OUTSIDE_CMAKE = """cmake_minimum_required(VERSION 3.16)
+project(outside CXX)
+set(CMAKE_CXX_STANDARD 17)
+find_package(fdp_stereo REQUIRED)
+add_executable(outside main.cpp)
+target_include_directories(outside PRIVATE ${fdp_stereo_INCLUDE_DIRS})
+target_link_libraries(outside PRIVATE ${fdp_stereo_LIBRARIES})
+"""
+OUTSIDE_CPP = """#include <cstdio>
+#include <fdp_stereo/pipeline.hpp>
+int main() {
+  cv::Mat left(40, 60, CV_8UC1);
+  cv::randu(left, 0, 255);
+  cv::Mat right = left.colRange(5, 60).clone();
+  cv::copyMakeBorder(right, right, 0, 0, 0, 5, cv::BORDER_REPLICATE);
+  fdp_stereo::PipelineParams params = fdp_stereo::loadPreset("fast");
+  params.search = {0, 16};
+  const cv::Mat disparity = fdp_stereo::Pipeline(params).run(left, right).disparity;
+  std::printf("%.1f\\n", disparity.at<float>(20, 30));
+}
+"""
+
+
+def prefix():
+    with open(os.path.join(BUILD, "CMakeCache.txt")) as cache:
+        return re.search(r"^CMAKE_INSTALL_PREFIX:\w+=(.*)$", cache.read(), re.M).group(1)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@unittest.skipUnless(prefix().startswith(BUILD), "the build installs outside itself, into %s" % prefix())
+class InstallTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        subprocess.run(["cmake", "--install", BUILD], check=True, stdout=subprocess.DEVNULL)
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def run_clean(self, *words, timeout=300):
+        done = subprocess.run(words, env=CLEAN, cwd=self.folder.name, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=timeout)
+        self.assertEqual(done.returncode, 0, done.stdout[-3000:])
+        return done.stdout
+
+    def in_ros(self, command, timeout=300):
+        setup = 'set +u; . "%s/setup.bash"; export ROS_HOME="%s"; ' % (prefix(), self.path("ros_home"))
+        return self.run_clean("bash", "-c", setup + command, timeout=timeout)
+
+    def test_programs_run_without_any_environment(self):
+        for program in ("match", "evaluate"):
+            self.assertIn("Usage", self.run_clean(os.path.join(prefix(), "lib", "fdp_stereo", program), "--help"))
+
+    def test_nothing_refers_to_the_build_or_the_sources(self):
+        for folder, _, names in os.walk(prefix()):
+            for name in names:
+                if name.endswith(".pyc"):  # Python's bytecode names the file it was compiled from
+                    continue
+                with open(os.path.join(folder, name), "rb") as file:
+                    content = file.read()
+                for place in (os.path.join(BUILD, "devel"), os.path.join(SOURCE, "src"), os.path.join(SOURCE, "include")):
+                    self.assertFalse(place.encode() + b"/" in content, "%s names %s" % (os.path.join(folder, name), place))
+
+    def test_headers_compile_and_the_library_links_outside(self):
+        with open(self.path("CMakeLists.txt"), "w") as file:
+            file.write(OUTSIDE_CMAKE)
+        with open(self.path("main.cpp"), "w") as file:
+            file.write(OUTSIDE_CPP)
+        self.run_clean("cmake", "-S", ".", "-B", "build", "-DCMAKE_PREFIX_PATH=" + prefix())
+        self.run_clean("cmake", "--build", "build")
+        self.assertEqual(self.run_clean(self.path("build/outside")).strip(), "5.0")
+
+    def test_rosrun_finds_the_programs(self):
+        self.assertIn("Usage", self.in_ros("rosrun fdp_stereo match --help"))
+
+    def test_the_demo_runs(self):
+        port = free_port()
+        self.in_ros("export ROS_MASTER_URI=http://localhost:%d; mkdir out; timeout 200 roslaunch -p %d fdp_stereo demo.launch "
+                    "output:=$PWD/out || true" % (port, port))
+        with open(self.path("out/summary.txt")) as summary:
+            self.assertRegex(summary.read(), r"disparity images out: +[1-9]")
+
+
+if __name__ == "__main__":
+    unittest.main()
