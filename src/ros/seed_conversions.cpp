@@ -123,6 +123,7 @@ Points pointsOfCloud(const sensor_msgs::PointCloud2& cloud, const std::string& t
   const std::uint32_t z = fieldOffset(cloud, "z", topic);
   checkCloud(cloud, topic);
   Points points;
+  if (cloud.width == 0) return points;  // a header may claim any number of rows of nothing
   for (std::uint32_t row = 0; row < cloud.height; ++row) {
     const std::uint8_t* point = cloud.data.data() + static_cast<std::size_t>(row) * cloud.row_step;
     for (std::uint32_t i = 0; i < cloud.width; ++i, point += cloud.point_step) {
