@@ -32,7 +32,7 @@ void growRegion(const cv::Mat& disparity, int start, float max_difference, std::
 
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
   if (params.max_size <= 0) return;
-  CV_Assert(disparity.isContinuous());
+  if (!disparity.isContinuous()) disparity = disparity.clone();
   auto* d = disparity.ptr<float>();
   std::vector<std::uint8_t> visited(disparity.total(), 0);
   std::vector<int> region;
