@@ -9,5 +9,3 @@ catkin_package(
   LIBRARIES fdp_stereo_core
   CATKIN_DEPENDS dynamic_reconfigure geometry_msgs nodelet roscpp sensor_msgs stereo_msgs
   DEPENDS EIGEN3 OpenCV)
-# What lies in the build folder, an install space for example, is no second package of this name to roslaunch.
-file(TOUCH ${CMAKE_BINARY_DIR}/CATKIN_IGNORE)
