@@ -3,9 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # build.sh [CMAKE OPTION...]: builds everything but the tests in Release mode into build/. The programs land in
-# build/devel/lib/fdp_stereo/; cmake --install build puts the package into build/.install unless another
-# -DCMAKE_INSTALL_PREFIX=... is given.
-# (hidden, for roslaunch searches all other folders of the repository and would find every file twice).
+# build/devel/lib/fdp_stereo/; cmake --install build puts the package into build/.install (hidden: roslaunch searches
+# all other folders of the repository and would find every file twice) unless another -DCMAKE_INSTALL_PREFIX=... is given.
 set -euo pipefail
 # shellcheck source=scripts/environment.sh
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
