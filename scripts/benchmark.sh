@@ -29,6 +29,7 @@ if [ ${#scenes[@]} -eq 0 ]; then
     [ ! -d "../shared/data/$folder" ] || scenes+=("../shared/data/$folder")
   done
 fi
+scripts/setup.sh >&2
 [ -f build/CMakeCache.txt ] || cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
 cmake --build build --target compare >&2
 
