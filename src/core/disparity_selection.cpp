@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "kernels/semi_global_kernels.hpp"
-
 namespace fdp_stereo {
 
 void DisparitySelection::createMaps(int height, int width, OptimizerOutput& output) {
@@ -14,20 +12,15 @@ void DisparitySelection::createMaps(int height, int width, OptimizerOutput& outp
   output.confidence.create(height, width, CV_32FC1);
 }
 
-void DisparitySelection::selectLeft(int x, const std::uint16_t* sums, DisparityRange range, float* disparity,
-                                    float* confidence) const {
-  const SemiGlobalKernels& kernels = FDP_STEREO_SELECT(semiGlobalKernels);
-  const std::uint16_t best = kernels.minimum(sums, range.count);
-  const int index = kernels.find(sums, range.count, best);
-  const int after = std::min(index + 2, range.count);
-  const std::uint16_t second =
-      std::min(kernels.minimum(sums, std::max(index - 1, 0)), kernels.minimum(sums + after, range.count - after));
-  confidence[x] = 1.0F - (best + 1.0F) / (second + 1.0F);
+void DisparitySelection::writeLeft(int x, const Winner& winner, const std::uint16_t* sums, DisparityRange range,
+                                   float* disparity, float* confidence) const {
+  const int index = winner.index;
+  confidence[x] = 1.0F - (winner.best + 1.0F) / (winner.second + 1.0F);
   disparity[x] = static_cast<float>(range.min + index);
   if (index > 0 && index + 1 < range.count) {
-    disparity[x] += subpixelOffset(fit_, sums[index - 1], best, sums[index + 1]);
+    disparity[x] += subpixelOffset(fit_, sums[index - 1], winner.best, sums[index + 1]);
   }
-  if (second * (100.0 - uniqueness_ratio_) < best * 100.0) disparity[x] = kInvalidDisparity;
+  if (winner.second * (100.0 - uniqueness_ratio_) < winner.best * 100.0) disparity[x] = kInvalidDisparity;
 }
 
 void DisparitySelection::writeRight(int width, DisparityRange range, float* disparity) const {
@@ -47,9 +40,11 @@ void DisparitySelection::selectRow(int y, const std::uint16_t* sums, int width, 
   const std::size_t length = static_cast<std::size_t>(width) + range.count + lead + std::max(-range.min, 0);
   right_best_.assign(length, 65535);
   right_index_.assign(length, 0);
+  winners_.resize(width);
+  kernels.findWinners(sums, stride, range.count, width, winners_.data());
   for (int x = 0; x < width; ++x) {
     const std::uint16_t* costs = sums + static_cast<std::size_t>(x) * stride;
-    selectLeft(x, costs, range, disparity, confidence);
+    writeLeft(x, winners_[x], costs, range, disparity, confidence);
     kernels.keepSmaller(costs, range.count, right_best_.data() + (width - 1 - x) + lead,
                         right_index_.data() + (width - 1 - x) + lead);
   }

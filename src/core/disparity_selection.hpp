@@ -8,6 +8,7 @@
 #include "fdp_stereo/cost_volume.hpp"
 #include "fdp_stereo/optimizer.hpp"
 #include "fdp_stereo/subpixel.hpp"
+#include "kernels/semi_global_kernels.hpp"
 
 namespace fdp_stereo {
 
@@ -25,11 +26,13 @@ class DisparitySelection {
                  OptimizerOutput& output);
 
  private:
-  void selectLeft(int x, const std::uint16_t* sums, DisparityRange range, float* disparity, float* confidence) const;
+  void writeLeft(int x, const Winner& winner, const std::uint16_t* sums, DisparityRange range, float* disparity,
+                 float* confidence) const;
   void writeRight(int width, DisparityRange range, float* disparity) const;
 
   SubpixelFit fit_;
   double uniqueness_ratio_;
+  std::vector<Winner> winners_;
   std::vector<std::uint16_t> right_best_;  // from right to left
   std::vector<std::uint16_t> right_index_;
 };

@@ -36,22 +36,20 @@ Penalties<T> makePenalties(const SemiGlobalParams& params, float step) {
   return penalties;
 }
 
-void stepKernel(const SemiGlobalKernels& kernels, PathStep<std::uint8_t>& step, int paths, int count, bool add,
-                std::uint16_t* sums) {
-  kernels.stepU8(step, paths, count, add, sums);
+void sweepRow(const SemiGlobalKernels& kernels, const SweepRow<std::uint8_t>& row, int paths, bool add) {
+  kernels.sweepRowU8(row, paths, add);
 }
-void stepKernel(const SemiGlobalKernels& kernels, PathStep<std::uint16_t>& step, int paths, int count, bool add,
-                std::uint16_t* sums) {
-  kernels.stepU16(step, paths, count, add, sums);
+void sweepRow(const SemiGlobalKernels& kernels, const SweepRow<std::uint16_t>& row, int paths, bool add) {
+  kernels.sweepRowU16(row, paths, add);
 }
 
 /// Path costs of one sweep; keep their memory from image to image.
 template <typename T>
 struct SweepBuffers {
-  std::array<std::vector<T>, 2> rows;      // of this row and the one before
-  std::array<std::vector<T>, 2> smallest;  // of each path cost array in them
-  std::array<std::vector<T>, 2> along;     // of the path along the row
-  std::vector<T> nothing;                  // stands for a predecessor outside the image
+  std::array<std::vector<T>, 2> rows;      // [path][pixel][slot] of this row and the one before
+  std::array<std::vector<T>, 2> smallest;  // [path][pixel], of each slot in them
+  std::vector<T> along;                    // two slots of the path along the row
+  std::vector<T> p2;                       // [path][x]
 };
 
 /// One sweep over the image, downwards from the top left or upwards from the bottom right: the paths from the
@@ -67,70 +65,69 @@ class Sweep {
         paths_(paths / 2),
         upwards_(upwards),
         width_(volume.width()),
+        pixels_(width_ + 2),
         slot_(volume.stride() + CostVolume::kPadding),
-        rows_(buffers.rows),
-        smallest_(buffers.smallest),
-        along_(buffers.along),
-        nothing_(buffers.nothing) {
-    const T guard = static_cast<T>(static_cast<T>(~T{0}) - penalties.p1);
-    for (auto& row : rows_) row.assign(static_cast<std::size_t>(paths_ - 1) * width_ * slot_ + slot_, guard);
-    for (auto& row : smallest_) row.assign(static_cast<std::size_t>(paths_ - 1) * width_, 0);
-    for (auto& pixel : along_) pixel.assign(2 * slot_, guard);
-    nothing_.assign(2 * slot_, 0);
+        guard_(static_cast<T>(static_cast<T>(~T{0}) - penalties.p1)),
+        buffers_(buffers) {
+    // All predecessors of the first row, and those beside the image ever, are slots of zeros: they cost nothing.
+    for (auto& row : buffers_.rows) {
+      row.assign((paths_ - 1) * pixels_ * slot_ + CostVolume::kPadding, guard_);
+      for (std::size_t pixel = 0; pixel < (paths_ - 1) * pixels_; ++pixel) clear(row.data() + pixel * slot_);
+    }
+    for (auto& row : buffers_.smallest) row.assign((paths_ - 1) * pixels_, 0);
+    buffers_.along.assign(2 * slot_ + CostVolume::kPadding, guard_);
+    buffers_.p2.resize(static_cast<std::size_t>(paths_) * width_);
   }
 
   /// Path costs of row y; rows come in the order of the sweep. sums: width x stride.
   void row(int y, bool add, std::uint16_t* sums) {
-    const SemiGlobalKernels& kernels = FDP_STEREO_SELECT(semiGlobalKernels);
-    PathStep<T> step;
-    step.p1 = penalties_.p1;
-    T smallest_along = 0;
-    for (int i = 0; i < width_; ++i) {
-      const int x = upwards_ ? width_ - 1 - i : i;
-      step.costs = volume_.at<T>(y, x);
-      connectAlong(i, x, y, smallest_along, step);
-      for (int k = 1; k < paths_; ++k) connectBefore(k, x, y, step);
-      stepKernel(kernels, step, paths_, volume_.stride(), add, sums + static_cast<std::size_t>(x) * volume_.stride());
-      smallest_along = step.smallest_after[0];
-      for (int k = 1; k < paths_; ++k) smallest_[current_][slotIndex(k, x)] = step.smallest_after[k];
-    }
+    SweepRow<T> row;
+    row.width = width_;
+    row.count = volume_.stride();
+    row.backwards = upwards_;
+    row.slot = static_cast<std::ptrdiff_t>(slot_);
+    row.p1 = penalties_.p1;
+    row.costs = volume_.at<T>(y, 0);
+    row.sums = sums;
+    clear(buffers_.along.data() + slot_);
+    for (int i = 0; i < 2; ++i) row.along[i] = buffers_.along.data() + i * slot_ + CostVolume::kPadding;
+    for (int k = 0; k < paths_; ++k) row.p2[k] = fillJumps(k, y);
+    for (int k = 1; k < paths_; ++k) connect(k, row);
+    sweepRow(FDP_STEREO_SELECT(semiGlobalKernels), row, paths_, add);
     current_ ^= 1;
-    ++rows_done_;
   }
 
  private:
-  std::size_t slotIndex(int path, int x) const { return static_cast<std::size_t>(path - 1) * width_ + x; }
-  T* slot(int buffer, int path, int x) {
-    return rows_[buffer].data() + slotIndex(path, x) * slot_ + CostVolume::kPadding;
+  void clear(T* slot) const {
+    std::fill(slot + CostVolume::kPadding, slot + CostVolume::kPadding + volume_.stride(), T{0});
   }
 
-  void connect(int path, const T* before, T smallest, int difference, PathStep<T>& step) const {
-    step.before[path] = before;
-    step.smallest_before[path] = smallest;
-    step.jump[path] = static_cast<T>(smallest + penalties_.p2[difference]);
+  /// Column of the predecessor less that of the pixel: the middle path comes straight from the row before.
+  int shift(int path) const {
+    if (path == 0) return upwards_ ? 1 : -1;
+    return paths_ == 2 ? 0 : path - 2;
   }
 
-  void connectAlong(int i, int x, int y, T smallest, PathStep<T>& step) {
-    const int x_before = upwards_ ? x + 1 : x - 1;
-    step.after[0] = along_[i & 1].data() + CostVolume::kPadding;
-    if (i == 0) return connect(0, nothing_.data() + CostVolume::kPadding, 0, 0, step);
-    connect(0, along_[(i & 1) ^ 1].data() + CostVolume::kPadding, smallest, difference(x, y, x_before, y), step);
+  void connect(int path, SweepRow<T>& row) {
+    // Pixel -1 comes first.
+    const std::size_t before = (path - 1) * pixels_ + 1 + shift(path), after = (path - 1) * pixels_ + 1;
+    row.before[path] = buffers_.rows[current_ ^ 1].data() + before * slot_ + CostVolume::kPadding;
+    row.after[path] = buffers_.rows[current_].data() + after * slot_ + CostVolume::kPadding;
+    row.smallest_before[path] = buffers_.smallest[current_ ^ 1].data() + before;
+    row.smallest_after[path] = buffers_.smallest[current_].data() + after;
   }
 
-  void connectBefore(int path, int x, int y, PathStep<T>& step) {
-    // The middle path comes straight from the row before, the two others from its neighbours.
-    const int x_before = paths_ == 2 ? x : x + path - 2;
-    const int y_before = upwards_ ? y + 1 : y - 1;
-    step.after[path] = slot(current_, path, x);
-    if (rows_done_ == 0 || x_before < 0 || x_before >= width_) {
-      return connect(path, nothing_.data() + CostVolume::kPadding, 0, 0, step);
-    }
-    connect(path, slot(current_ ^ 1, path, x_before), smallest_[current_ ^ 1][slotIndex(path, x_before)],
-            difference(x, y, x_before, y_before), step);
-  }
-
-  int difference(int x, int y, int x_before, int y_before) const {
-    return std::abs(grey_.ptr<std::uint8_t>(y)[x] - grey_.ptr<std::uint8_t>(y_before)[x_before]);
+  /// P2 of every pixel of row y towards its predecessor; outside the image there is none, and any value will do.
+  const T* fillJumps(int path, int y) {
+    const int y_before = path == 0 ? y : std::clamp(upwards_ ? y + 1 : y - 1, 0, grey_.rows - 1);
+    const auto* here = grey_.ptr<std::uint8_t>(y);
+    const auto* before = grey_.ptr<std::uint8_t>(y_before) + shift(path);
+    T* p2 = buffers_.p2.data() + static_cast<std::size_t>(path) * width_;
+    const int first = std::max(0, -shift(path)), last = width_ - std::max(0, shift(path));
+    std::fill(p2, p2 + first, T{0});
+    for (int x = first; x < last; ++x) p2[x] = penalties_.p2[std::abs(here[x] - before[x])];
+    std::fill(p2 + last, p2 + width_, T{0});
+    return p2;
   }
 
   const CostVolume& volume_;
@@ -139,13 +136,11 @@ class Sweep {
   const int paths_;
   const bool upwards_;
   const int width_;
+  const std::size_t pixels_;
   const std::size_t slot_;
-  std::array<std::vector<T>, 2>& rows_;
-  std::array<std::vector<T>, 2>& smallest_;
-  std::array<std::vector<T>, 2>& along_;
-  std::vector<T>& nothing_;
+  const T guard_;
+  SweepBuffers<T>& buffers_;
   int current_ = 0;
-  int rows_done_ = 0;
 };
 
 void check(const CostVolume& volume, const SemiGlobalParams& params) {

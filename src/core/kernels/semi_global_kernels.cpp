@@ -6,13 +6,11 @@ namespace fdp_stereo {
 namespace FDP_STEREO_ISA {
 namespace {
 
-template <typename T>
-inline T smaller(T a, T b) {
-  return a < b ? a : b;
-}
-
 // Vector types of the compiler, of a fixed width on every instruction set: the disparities of a pixel are a multiple of
 // 16, so that no scalar remainder is left.
+typedef std::uint64_t U64x2 __attribute__((vector_size(16)));
+typedef std::uint32_t U32x4 __attribute__((vector_size(16)));
+
 template <typename T, int kLanes>
 struct Lanes {
   typedef T Vector __attribute__((vector_size(kLanes * sizeof(T))));
@@ -24,82 +22,183 @@ struct Lanes {
     return v;
   }
   static void store(const Vector& v, T* to) { __builtin_memcpy(to, &v, sizeof(v)); }
-  static Vector smallerOf(const Vector& a, const Vector& b) { return a < b ? a : b; }
-  static T smallestOf(const Vector& v) {
-    T lanes[kLanes];
-    store(v, lanes);
-    T result = lanes[0];
-    for (int i = 1; i < kLanes; ++i) result = smaller(result, lanes[i]);
-    return result;
+};
+
+template <typename Vector>
+inline Vector smallerOf(const Vector& a, const Vector& b) {
+  return a < b ? a : b;
+}
+
+template <typename T>
+using Half = typename Lanes<T, 16 / sizeof(T)>::Vector;
+template <typename T>
+using Full = typename Lanes<T, 32 / sizeof(T)>::Vector;
+
+template <typename T>
+inline Half<T> smallerHalf(const Full<T>& v) {
+  Half<T> halves[2];
+  __builtin_memcpy(halves, &v, sizeof(v));
+  return smallerOf(halves[0], halves[1]);
+}
+
+#ifdef __clang__
+#define FDP_STEREO_PICK(Mask, a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define FDP_STEREO_PICK(Mask, a, b, ...) __builtin_shuffle(a, b, Mask{__VA_ARGS__})
+#endif
+
+/// The smallest lanes of four vectors, by halving all of them together.
+template <typename T>
+inline void smallestLanes(const Half<T> (&v)[4], T (&smallest)[4]) {
+  U64x2 pairs[2];
+  for (int k = 0; k < 2; ++k) {
+    const auto a = reinterpret_cast<U64x2>(v[2 * k]);
+    const auto b = reinterpret_cast<U64x2>(v[2 * k + 1]);
+    pairs[k] = reinterpret_cast<U64x2>(smallerOf(reinterpret_cast<Half<T>>(FDP_STEREO_PICK(U64x2, a, b, 0, 2)),
+                                                 reinterpret_cast<Half<T>>(FDP_STEREO_PICK(U64x2, a, b, 1, 3))));
   }
+  const auto a = reinterpret_cast<U32x4>(pairs[0]);
+  const auto b = reinterpret_cast<U32x4>(pairs[1]);
+  Half<T> all = smallerOf(reinterpret_cast<Half<T>>(FDP_STEREO_PICK(U32x4, a, b, 0, 2, 4, 6)),
+                          reinterpret_cast<Half<T>>(FDP_STEREO_PICK(U32x4, a, b, 1, 3, 5, 7)));
+  for (unsigned bits = 16; bits >= 8 * sizeof(T); bits /= 2) {
+    all = smallerOf(all, reinterpret_cast<Half<T>>(reinterpret_cast<U32x4>(all) >> bits));
+  }
+  const auto lanes = reinterpret_cast<U32x4>(all);
+  for (int k = 0; k < 4; ++k) smallest[k] = static_cast<T>(lanes[k]);
+}
+
+#undef FDP_STEREO_PICK
+
+/// The paths that meet in one pixel.
+template <typename T, int kPaths>
+struct PixelPaths {
+  const T* before[kPaths];
+  T* after[kPaths];
+  T smallest[kPaths];  // of the predecessors
+  T jump[kPaths];      // that + P2
 };
 
 /// kLanes disparities of all paths of a pixel; all sums fit T by the choice of the cost step.
 template <typename T, int kLanes, int kPaths, bool kAdd>
-inline void stepLanes(const PathStep<T>& step, int i, typename Lanes<T, kLanes>::Vector (&smallest)[kPaths],
-                      std::uint16_t* sums) {
+inline void stepLanes(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, int i,
+                      typename Lanes<T, kLanes>::Vector (&smallest)[4], std::uint16_t* sums) {
   using L = Lanes<T, kLanes>;
   using Vector = typename L::Vector;
   using Sums = typename L::Sums;
-  const Vector cost = L::load(step.costs + i);
+  const Vector cost = L::load(costs + i);
   Sums sum = {};
   if (kAdd) __builtin_memcpy(&sum, sums + i, sizeof(sum));
   for (int k = 0; k < kPaths; ++k) {
-    const T* before = step.before[k] + i;
-    const Vector aside = L::smallerOf(L::load(before - 1), L::load(before + 1)) + step.p1;
-    const Vector jump = Vector{} + step.jump[k];
-    const Vector path = L::smallerOf(L::smallerOf(L::load(before), aside), jump) - step.smallest_before[k] + cost;
-    L::store(path, step.after[k] + i);
-    smallest[k] = L::smallerOf(smallest[k], path);
+    const T* before = paths.before[k] + i;
+    const Vector aside = smallerOf(L::load(before - 1), L::load(before + 1)) + p1;
+    const Vector jump = Vector{} + paths.jump[k];
+    const Vector path = smallerOf(smallerOf(L::load(before), aside), jump) - paths.smallest[k] + cost;
+    L::store(path, paths.after[k] + i);
+    smallest[k] = smallerOf(smallest[k], path);
     sum += __builtin_convertvector(path, Sums);
   }
   __builtin_memcpy(sums + i, &sum, sizeof(sum));
 }
 
+/// All disparities of a pixel; smallest[k] = the smallest cost of path k.
 template <typename T, int kPaths, bool kAdd>
-void stepPaths(PathStep<T>& paths_step, int count, std::uint16_t* sums) {
-  // A copy whose address nobody has: bytes stored through T* could otherwise change it, and it would be read anew.
-  const PathStep<T> step = paths_step;
+inline void stepPixel(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, int count, std::uint16_t* sums,
+                      T (&smallest)[4]) {
   constexpr int kWide = 32 / sizeof(T);
-  constexpr int kNarrow = 16;
-  typename Lanes<T, kWide>::Vector smallest[kPaths];
-  typename Lanes<T, kNarrow>::Vector smallest_end[kPaths];
-  for (int k = 0; k < kPaths; ++k) {
-    smallest[k] = ~typename Lanes<T, kWide>::Vector{};
-    smallest_end[k] = ~typename Lanes<T, kNarrow>::Vector{};
-  }
+  Full<T> wide[4];
+  for (auto& v : wide) v = ~Full<T>{};
   int i = 0;
-  for (; i + kWide <= count; i += kWide) stepLanes<T, kWide, kPaths, kAdd>(step, i, smallest, sums);
-  for (; i < count; i += kNarrow) stepLanes<T, kNarrow, kPaths, kAdd>(step, i, smallest_end, sums);
-  for (int k = 0; k < kPaths; ++k) {
-    paths_step.smallest_after[k] =
-        smaller(Lanes<T, kWide>::smallestOf(smallest[k]), Lanes<T, kNarrow>::smallestOf(smallest_end[k]));
+  for (; i + kWide <= count; i += kWide) stepLanes<T, kWide, kPaths, kAdd>(paths, costs, p1, i, wide, sums);
+  Half<T> half[4];
+  for (int k = 0; k < 4; ++k) half[k] = smallerHalf<T>(wide[k]);
+  if (i < count) stepLanes<T, kWide / 2, kPaths, kAdd>(paths, costs, p1, i, half, sums);
+  smallestLanes<T>(half, smallest);
+}
+
+template <typename T, int kPaths, bool kAdd>
+void sweepRowOf(const SweepRow<T>& row_in) {
+  // A copy whose address nobody has: bytes stored through T* could otherwise change it, and it would be read anew.
+  const SweepRow<T> row = row_in;
+  T smallest[4] = {};
+  PixelPaths<T, kPaths> paths;
+  for (int n = 0; n < row.width; ++n) {
+    const int x = row.backwards ? row.width - 1 - n : n;
+    const std::ptrdiff_t slot = x * row.slot;
+    const std::ptrdiff_t entry = static_cast<std::ptrdiff_t>(x) * row.count;
+    paths.before[0] = row.along[(n & 1) ^ 1];
+    paths.after[0] = row.along[n & 1];
+    paths.smallest[0] = smallest[0];
+    for (int k = 1; k < kPaths; ++k) {
+      paths.before[k] = row.before[k] + slot;
+      paths.after[k] = row.after[k] + slot;
+      paths.smallest[k] = row.smallest_before[k][x];
+    }
+    for (int k = 0; k < kPaths; ++k) paths.jump[k] = static_cast<T>(paths.smallest[k] + row.p2[k][x]);
+    stepPixel<T, kPaths, kAdd>(paths, row.costs + entry, row.p1, row.count, row.sums + entry, smallest);
+    for (int k = 1; k < kPaths; ++k) row.smallest_after[k][x] = smallest[k];
   }
 }
 
 template <typename T>
-void step(PathStep<T>& paths_step, int paths, int count, bool add, std::uint16_t* sums) {
+void sweepRow(const SweepRow<T>& row, int paths, bool add) {
   if (paths == 2) {
-    add ? stepPaths<T, 2, true>(paths_step, count, sums) : stepPaths<T, 2, false>(paths_step, count, sums);
+    add ? sweepRowOf<T, 2, true>(row) : sweepRowOf<T, 2, false>(row);
   } else {
-    add ? stepPaths<T, 4, true>(paths_step, count, sums) : stepPaths<T, 4, false>(paths_step, count, sums);
+    add ? sweepRowOf<T, 4, true>(row) : sweepRowOf<T, 4, false>(row);
   }
 }
 
-std::uint16_t minimum(const std::uint16_t* values, int count) {
-  std::uint16_t result = 65535;
-  for (int i = 0; i < count; ++i) result = smaller(result, values[i]);
-  return result;
+/// 16 values, 65535 where the index is not below `count`.
+inline Full<std::uint16_t> loadMasked(const std::uint16_t* values, const Full<std::uint16_t>& index, int count) {
+  return index < static_cast<std::uint16_t>(count) ? Lanes<std::uint16_t, 16>::load(values) : ~Full<std::uint16_t>{};
 }
 
-int find(const std::uint16_t* values, int count, std::uint16_t value) {
-  std::uint16_t first = static_cast<std::uint16_t>(count);
-#pragma omp simd reduction(min : first)
-  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(count); ++i) {
-    const std::uint16_t index = values[i] == value ? i : std::uint16_t{65535};
-    first = smaller(first, index);
+/// Winners of four pixels, so that the lanes of all of them are reduced together.
+void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&winners)[4]) {
+  using Vector = Full<std::uint16_t>;
+  const Vector first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  Vector best[4], best_index[4];
+  Half<std::uint16_t> half[4];
+  std::uint16_t smallest[4], winner[4], second[4];
+  for (int k = 0; k < 4; ++k) {
+    best[k] = best_index[k] = ~Vector{};
+    Vector index = first;
+    for (int i = 0; i < count; i += 16, index += 16) {
+      const Vector values = loadMasked(sums[k] + i, index, count);
+      best_index[k] = values < best[k] ? index : best_index[k];
+      best[k] = smallerOf(values, best[k]);
+    }
+    half[k] = smallerHalf<std::uint16_t>(best[k]);
   }
-  return first;
+  smallestLanes<std::uint16_t>(half, smallest);
+  for (int k = 0; k < 4; ++k) {
+    half[k] = smallerHalf<std::uint16_t>(best[k] == smallest[k] ? best_index[k] : ~Vector{});
+  }
+  smallestLanes<std::uint16_t>(half, winner);
+  for (int k = 0; k < 4; ++k) {
+    Vector others = ~Vector{};
+    Vector index = first;
+    for (int i = 0; i < count; i += 16, index += 16) {
+      const Vector values = loadMasked(sums[k] + i, index, count);
+      // Modulo 2^16: 0, 1 and 2 for the winner and its neighbours.
+      const Vector distance = index - winner[k] + static_cast<std::uint16_t>(1);
+      others = smallerOf(others, distance < static_cast<std::uint16_t>(3) ? ~Vector{} : values);
+    }
+    half[k] = smallerHalf<std::uint16_t>(others);
+  }
+  smallestLanes<std::uint16_t>(half, second);
+  for (int k = 0; k < 4; ++k) winners[k] = {smallest[k], winner[k], second[k]};
+}
+
+void findWinners(const std::uint16_t* sums, int stride, int count, int width, Winner* winners) {
+  for (int x = 0; x < width; x += 4) {
+    const std::uint16_t* four[4];
+    for (int k = 0; k < 4; ++k) four[k] = sums + static_cast<std::ptrdiff_t>(x + k < width ? x + k : x) * stride;
+    Winner found[4];
+    findFourWinners(four, count, found);
+    for (int k = 0; k < 4 && x + k < width; ++k) winners[x + k] = found[k];
+  }
 }
 
 void keepSmaller(const std::uint16_t* __restrict values, int count, std::uint16_t* __restrict best,
@@ -114,7 +213,7 @@ void keepSmaller(const std::uint16_t* __restrict values, int count, std::uint16_
 }  // namespace
 
 const SemiGlobalKernels& semiGlobalKernels() {
-  static const SemiGlobalKernels kernels = {step<std::uint8_t>, step<std::uint16_t>, minimum, find, keepSmaller};
+  static const SemiGlobalKernels kernels = {sweepRow<std::uint8_t>, sweepRow<std::uint16_t>, findWinners, keepSmaller};
   return kernels;
 }
 
