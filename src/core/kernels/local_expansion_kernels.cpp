@@ -82,8 +82,9 @@ void fetchRow(const PlaneCostTask& task, int k, int y, const Span& xs, float* __
     entry[i] = e;
     fraction[i] = f - static_cast<float>(e);
   }
-  const T* pixel = volumeOf<T>(task) + (static_cast<std::ptrdiff_t>(y) * task.image_width + xs.begin) * task.stride;
-  for (int i = 0; i < n; ++i, pixel += task.stride) std::memcpy(pairs + 2 * i, pixel + entry[i], 2 * sizeof(T));
+  const std::ptrdiff_t stride = task.stride;
+  const T* pixel = volumeOf<T>(task) + (static_cast<std::ptrdiff_t>(y) * task.image_width + xs.begin) * stride;
+  for (int i = 0; i < n; ++i, pixel += stride) std::memcpy(pairs + 2 * i, pixel + entry[i], 2 * sizeof(T));
   for (int i = 0; i < n; ++i) {
     const float low = static_cast<float>(pairs[2 * i]);
     const float high = static_cast<float>(pairs[2 * i + 1]);
@@ -261,101 +262,180 @@ inline float truncated(float value, float limit) { return value < limit ? value 
 constexpr int kStepX[kPairDirections] = {1, 1, 0, -1};
 constexpr int kStepY[kPairDirections] = {0, 1, 1, 1};
 
-// The columns and rows of the rectangle whose neighbour in `direction` lies in it too.
-inline Span columnsOf(const PairwiseTask& task, int direction) {
-  return {kStepX[direction] < 0 ? 1 : 0, task.width - (kStepX[direction] > 0 ? 1 : 0)};
+inline std::ptrdiff_t stepOf(const MoveTask& task, int direction) {
+  return static_cast<std::ptrdiff_t>(kStepY[direction]) * task.pitch + kStepX[direction];
 }
-inline int rowsOf(const PairwiseTask& task, int direction) { return task.height - kStepY[direction]; }
+// Rows are multiples of kMoveLanes long: told to the compiler, so that loops along them have no rest.
+inline int pitchOf(const MoveTask& task) { return task.pitch / kMoveLanes * kMoveLanes; }
 
-void keepCosts(const PairwiseTask& task) {
-  const std::size_t size = static_cast<std::size_t>(task.width) * task.height;
+void keepCosts(const MoveTask& task) {
+  const int n = pitchOf(task);
   for (int d = 0; d < kPairDirections; ++d) {
-    std::memset(task.keep[d], 0, size * sizeof(float));
-    const Span columns = columnsOf(task, d);
-    const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(kStepY[d]) * task.image_width + kStepX[d];
-    const float dx = static_cast<float>(kStepX[d]);
-    const float dy = static_cast<float>(kStepY[d]);
-    for (int y = 0; y < rowsOf(task, d); ++y) {
-      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(task.y0 + y) * task.image_width + task.x0;
-      const float* a = task.a + row;
-      const float* b = task.b + row;
-      const float* c = task.c + row;
-      const float* w = task.weights[d] + row;
-      float* __restrict out = task.keep[d] + static_cast<std::ptrdiff_t>(y) * task.width;
+    const float sx = static_cast<float>(kStepX[d]);
+    const float sy = static_cast<float>(kStepY[d]);
+    for (int y = 0; y < task.rows; ++y) {
+      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * n;
+      const std::ptrdiff_t other = row + stepOf(task, d);
       const float v = static_cast<float>(task.y0 + y);
-      for (int x = columns.begin; x < columns.end; ++x) {
-        const float da = a[x] - a[x + step];
-        const float db = b[x] - b[x + step];
-        const float at_p = da * static_cast<float>(task.x0 + x) + db * v + (c[x] - c[x + step]);
-        const float at_q = at_p + da * dx + db * dy;
-        out[x] = w[x] * truncated(std::fabs(at_p) + std::fabs(at_q), task.threshold);
+      const float* weight = task.weights[d] + row;
+      float* __restrict out = task.keep[d] + row;
+      for (int x = 0; x < n; ++x) {
+        const float da = task.a[row + x] - task.a[other + x];
+        const float db = task.b[row + x] - task.b[other + x];
+        const float dc = task.c[row + x] - task.c[other + x];
+        const float at_p = da * static_cast<float>(task.x0 + x) + db * v + dc;
+        const float at_q = at_p + da * sx + db * sy;
+        out[x] = weight[x] * truncated(std::fabs(at_p) + std::fabs(at_q), task.threshold);
       }
     }
+  }
+  float* __restrict sum = task.keep_sum;
+  for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(task.rows) * n; ++p) {
+    float pairs = 0.0F;
+    for (int d = 0; d < kPairDirections; ++d) pairs += task.keep[d][p] + task.keep[d][p - stepOf(task, d)];
+    sum[p] = task.cost[p] + pairs;
   }
 }
 
 // Difference planes, new minus current, at their own pixels.
-void planeDifferences(const MoveTask& task, float* __restrict da, float* __restrict db, float* __restrict dd) {
-  const PairwiseTask& t = task.pairs;
-  for (int y = 0; y < t.height; ++y) {
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(t.y0 + y) * t.image_width + t.x0;
-    const float* a = t.a + row;
-    const float* b = t.b + row;
-    const float* c = t.c + row;
-    const float v = static_cast<float>(t.y0 + y);
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(y) * t.width;
-    for (int x = 0; x < t.width; ++x) {
-      const float slope_x = task.a - a[x];
-      const float slope_y = task.b - b[x];
-      da[at + x] = slope_x;
-      db[at + x] = slope_y;
-      dd[at + x] = slope_x * static_cast<float>(t.x0 + x) + slope_y * v + (task.c - c[x]);
+void planeDifferences(const MoveTask& task) {
+  const int n = pitchOf(task);
+  for (int y = 0; y < task.rows; ++y) {
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * n;
+    const float v = static_cast<float>(task.y0 + y);
+    float* __restrict da = task.da + row;
+    float* __restrict db = task.db + row;
+    float* __restrict dd = task.dd + row;
+    for (int x = 0; x < n; ++x) {
+      const float slope_x = task.plane_a - task.a[row + x];
+      const float slope_y = task.plane_b - task.b[row + x];
+      da[x] = slope_x;
+      db[x] = slope_y;
+      dd[x] = slope_x * static_cast<float>(task.x0 + x) + slope_y * v + (task.plane_c - task.c[row + x]);
     }
   }
 }
 
+// Edges of one direction, and what the pairs add to the terminals of their first and second pixels.
+void pairTerms(const MoveTask& task, int d) {
+  const std::ptrdiff_t size = static_cast<std::ptrdiff_t>(task.rows) * pitchOf(task);
+  const std::ptrdiff_t step = stepOf(task, d);
+  const float sx = static_cast<float>(kStepX[d]);
+  const float sy = static_cast<float>(kStepY[d]);
+  const float* dd = task.dd;
+  const float* weight = task.weights[d];
+  const float* keep = task.keep[d];
+  float* __restrict edge = task.edge[d];
+  float* __restrict terminal = task.terminal;
+  float* __restrict share = task.share;
+  for (std::ptrdiff_t p = 0; p < size; ++p) {
+    const std::ptrdiff_t q = p + step;
+    const float new_p = std::fabs(dd[q]) + std::fabs(dd[q] - task.da[q] * sx - task.db[q] * sy);  // p new, q keeps
+    const float new_q = std::fabs(dd[p]) + std::fabs(dd[p] + task.da[p] * sx + task.db[p] * sy);  // p keeps, q new
+    const float b_cost = weight[p] * truncated(new_p, task.threshold);
+    const float c_cost = weight[p] * truncated(new_q, task.threshold);
+    const float rest = 0.5F * (b_cost + c_cost - keep[p]);
+    edge[p] = rest > 0.0F ? rest : 0.0F;
+    terminal[p] += b_cost - keep[p] - edge[p];
+    share[p] = c_cost - keep[p] - edge[p];
+  }
+  for (std::ptrdiff_t p = 0; p < size; ++p) terminal[p] += share[p - step];
+}
+
 void moveTerms(const MoveTask& task) {
-  const PairwiseTask& t = task.pairs;
-  const std::size_t size = static_cast<std::size_t>(t.width) * t.height;
-  float* da = task.scratch;
-  float* db = da + size;
-  float* dd = db + size;
-  float* __restrict share = dd + size;  // of the second pixel of each pair of a row
-  planeDifferences(task, da, db, dd);
-  std::memset(task.terminal, 0, size * sizeof(float));
-  for (int d = 0; d < kPairDirections; ++d) {
-    std::memset(task.edge[d], 0, size * sizeof(float));
-    const Span columns = columnsOf(t, d);
-    const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(kStepY[d]) * t.width + kStepX[d];
-    const float sx = static_cast<float>(kStepX[d]);
-    const float sy = static_cast<float>(kStepY[d]);
-    for (int y = 0; y < rowsOf(t, d); ++y) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(y) * t.width;
-      const float* weight = t.weights[d] + static_cast<std::ptrdiff_t>(t.y0 + y) * t.image_width + t.x0;
-      const float* keep = t.keep[d] + at;
-      float* __restrict edge = task.edge[d] + at;
-      float* __restrict terminal = task.terminal + at;
-      for (int x = columns.begin; x < columns.end; ++x) {
-        const std::ptrdiff_t p = at + x;
-        const std::ptrdiff_t q = p + step;
-        const float new_p = std::fabs(dd[q]) + std::fabs(dd[q] - da[q] * sx - db[q] * sy);  // p new, q keeps
-        const float new_q = std::fabs(dd[p]) + std::fabs(dd[p] + da[p] * sx + db[p] * sy);  // p keeps, q new
-        const float b_cost = weight[x] * truncated(new_p, t.threshold);
-        const float c_cost = weight[x] * truncated(new_q, t.threshold);
-        const float rest = 0.5F * (b_cost + c_cost - keep[x]);
-        edge[x] = rest > 0.0F ? rest : 0.0F;
-        terminal[x] += b_cost - keep[x] - edge[x];
-        share[x] = c_cost - keep[x] - edge[x];
-      }
-      for (int x = columns.begin; x < columns.end; ++x) terminal[x + step] += share[x];
+  const std::ptrdiff_t size = static_cast<std::ptrdiff_t>(task.rows) * pitchOf(task);
+  planeDifferences(task);
+  std::memset(task.terminal, 0, static_cast<std::size_t>(size) * sizeof(float));
+  const float* proposed = task.proposed;
+  for (int y = 1; y < task.rows - 1; ++y, proposed += task.width) {
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * task.pitch + 1;
+    for (int x = 0; x < task.width; ++x) task.terminal[row + x] = proposed[x] - task.cost[row + x];
+  }
+  for (int d = 0; d < kPairDirections; ++d) pairTerms(task, d);
+  float* __restrict total = task.total;
+  for (std::ptrdiff_t p = 0; p < size; ++p) {
+    float edges = 0.0F;
+    for (int d = 0; d < kPairDirections; ++d) edges += task.edge[d][p] + task.edge[d][p - stepOf(task, d)];
+    total[p] = task.terminal[p] + edges;
+  }
+}
+
+typedef float Entries __attribute__((vector_size(kMoveLanes * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef std::int32_t Flags __attribute__((vector_size(kMoveLanes * sizeof(std::int32_t))));
+
+inline Entries& entries(float* p) { return *reinterpret_cast<Entries*>(p); }
+inline const Entries& entries(const float* p) { return *reinterpret_cast<const Entries*>(p); }
+
+// The edges of a MoveTask, held apart so that loops need not read the pointers anew.
+struct Edges {
+  const float* e0;
+  const float* e1;
+  const float* e2;
+  const float* e3;
+  std::ptrdiff_t pitch;
+  explicit Edges(const MoveTask& task)
+      : e0(task.edge[0]), e1(task.edge[1]), e2(task.edge[2]), e3(task.edge[3]), pitch(task.pitch) {}
+
+  // Sums of the edges from the entries p .. p + kMoveLanes - 1 to those of their neighbours that are 1.
+  Entries to(const float* x, std::ptrdiff_t p) const {
+    const std::ptrdiff_t n = pitch;
+    return entries(e0 + p) * entries(x + p + 1) + entries(e0 + p - 1) * entries(x + p - 1) +
+           entries(e1 + p) * entries(x + p + n + 1) + entries(e1 + p - n - 1) * entries(x + p - n - 1) +
+           entries(e2 + p) * entries(x + p + n) + entries(e2 + p - n) * entries(x + p - n) +
+           entries(e3 + p) * entries(x + p + n - 1) + entries(e3 + p - n + 1) * entries(x + p - n + 1);
+  }
+};
+
+// Sets every entry of row y to what pays for it while its neighbours are as x says. True if one changed.
+bool improveRow(const MoveTask& task, const Edges& edges, int y, float* x) {
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * task.pitch;
+  Flags changed = {};
+  for (std::ptrdiff_t p = row; p < row + task.pitch; p += kMoveLanes) {
+    const Entries gain = entries(task.total + p) - 2.0F * edges.to(x, p);
+    const Entries value = gain < 0.0F ? entries(task.inner + p) : Entries{};
+    changed |= value != entries(x + p);
+    entries(x + p) = value;
+  }
+  int any = 0;
+  for (int k = 0; k < kMoveLanes; ++k) any |= changed[k];
+  return any != 0;
+}
+
+void improve(const MoveTask& task, float* x) {
+  std::memset(task.stale, 1, static_cast<std::size_t>(task.rows));
+  const Edges edges(task);
+  bool any = true;
+  for (int pass = 0; any; ++pass) {
+    any = false;
+    for (int k = 1; k < task.rows - 1; ++k) {
+      const int y = pass % 2 == 0 ? k : task.rows - 1 - k;
+      if (task.stale[y] == 0) continue;
+      task.stale[y] = 0;
+      if (!improveRow(task, edges, y, x)) continue;
+      any = true;
+      task.stale[y - 1] = task.stale[y] = task.stale[y + 1] = 1;
     }
   }
+}
+
+double moveChange(const MoveTask& task) {
+  const Edges edges(task);
+  double sums[kMoveLanes] = {};
+  const std::ptrdiff_t end = static_cast<std::ptrdiff_t>(task.rows - 1) * task.pitch;
+  for (std::ptrdiff_t p = task.pitch; p < end; p += kMoveLanes) {
+    const Entries part = entries(task.lower + p) * (entries(task.total + p) - edges.to(task.lower, p));
+    for (int k = 0; k < kMoveLanes; ++k) sums[k] += static_cast<double>(part[k]);
+  }
+  double sum = 0.0;
+  for (const double part : sums) sum += part;
+  return sum;
 }
 
 }  // namespace
 
 const LocalExpansionKernels& localExpansionKernels() {
-  static constexpr LocalExpansionKernels kKernels = {planeCostScratch, planeCosts, keepCosts, moveTerms};
+  static constexpr LocalExpansionKernels kKernels = {planeCostScratch, planeCosts, keepCosts,
+                                                     moveTerms,        improve,    moveChange};
   return kKernels;
 }
 

@@ -12,8 +12,8 @@
 
 namespace fdp_stereo::local_expansion {
 
-/// Offers planes to the pixels of one region: those for which taking it together lowers the energy most, do. Exact, by
-/// a minimum cut. One per thread.
+/// Offers planes to the pixels of one region: those for which taking it together lowers the energy most, do. Exact:
+/// most pixels are decided by bounds, the others by a minimum cut. One per thread.
 class ExpansionMove {
  public:
   /// Starts work on `region`. Labels next to it must not change until the next call.
@@ -25,27 +25,36 @@ class ExpansionMove {
   double offerUnary(const Plane& plane, const float* costs);
 
  private:
-  void computeKeep();
+  /// [rows][pitch] floats of a MoveTask, with the readable margin around them.
+  class Field {
+   public:
+    float* create(std::size_t size, std::size_t margin);
+    float* data() { return values_.data() + margin_; }
+
+   private:
+    std::vector<float> values_;
+    std::size_t margin_ = 0;
+  };
+
+  void prepare();
+  void createFields();
+  void copyLabels();
   bool hopeless(const float* costs) const;
-  void computeTerms(const Plane& plane, const float* costs);
-  void fixBorder();
-  // What the terms alone decide: -1 nobody wants the plane, 1 everybody does, 0 open.
-  int obvious() const;
+  bool decide();
   void cut();
-  double change() const;
   void apply(const Plane& plane, const float* costs);
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * outer_.width + x; }
+  std::ptrdiff_t at(int x, int y) const { return static_cast<std::ptrdiff_t>(y + 1) * task_.pitch + x + 1; }
+  float edgeTo(std::ptrdiff_t p, int direction) const;
 
   Labels* labels_ = nullptr;
+  const Smoothness* smoothness_ = nullptr;
   cv::Rect region_;
-  cv::Rect outer_;  // the region and the ring of pixels around it, which keep their labels
-  cv::Rect inner_;  // the region within outer_
-  bool keep_known_ = false;
-  MoveTask move_{};
-  std::array<std::vector<float>, kPairDirections> keep_, edge_;
-  std::vector<float> terminal_, scratch_;
-  std::vector<float> keep_sum_;      // of the region: current data term and all pairs of a pixel
-  std::vector<std::uint8_t> takes_;  // of the region
+  bool prepared_ = false;    // the fields hold the labels
+  bool keep_known_ = false;  // and the costs of keeping them
+  MoveTask task_{};
+  Field a_, b_, c_, cost_, inner_, keep_sum_, da_, db_, dd_, terminal_, total_, share_, lower_, upper_;
+  std::array<Field, kPairDirections> weights_, keep_, edge_;
+  std::vector<unsigned char> stale_;
   GridMaxFlow flow_;
 };
 

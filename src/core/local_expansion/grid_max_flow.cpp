@@ -12,50 +12,36 @@ constexpr std::array<int, GridMaxFlow::kDirections> GridMaxFlow::kDx;
 constexpr std::array<int, GridMaxFlow::kDirections> GridMaxFlow::kDy;
 
 void GridMaxFlow::reset(int width, int height) {
-  width_ = width;
-  height_ = height;
-  stride_ = width + 2;  // a ring of nodes without capacity stands in for tests of the border
+  const int stride = width + 2;  // a ring of places without nodes stands in for tests of the border
+  const std::size_t size = static_cast<std::size_t>(stride) * (height + 2);
+  if (stride == stride_ && size == places_.size()) {
+    for (Node* node : nodes_) *node = Node{};
+  } else {
+    places_.assign(size, Node{});
+  }
+  stride_ = stride;
   for (int d = 0; d < kDirections; ++d) offset_[d] = kDy[d] * stride_ + kDx[d];
-  nodes_.assign(static_cast<std::size_t>(stride_) * (height + 2), Node{});
+  nodes_.clear();
   active_.clear();
   active_front_ = 0;
   flow_ = 0.0;
   time_ = 0;
 }
 
+void GridMaxFlow::addNode(int x, int y, float terminal) {
+  Node* node = &places_[index(x, y)];
+  node->terminal = terminal;
+  nodes_.push_back(node);
+}
+
 void GridMaxFlow::setEdge(int x, int y, int direction, float capacity, float reverse) {
-  Node* node = &nodes_[index(x, y)];
+  Node* node = &places_[index(x, y)];
   node->capacity[direction] = capacity;
   node[offset_[direction]].capacity[direction ^ 4] = reverse;
 }
 
-void GridMaxFlow::load(int width, int height, const float* terminal, const std::array<const float*, 4>& edges,
-                       int pitch) {
-  reset(width, height);
-  for (int y = 0; y < height; ++y) {
-    Node* node = &nodes_[index(0, y)];
-    for (int x = 0; x < width; ++x, ++node) {
-      const std::size_t p = static_cast<std::size_t>(y) * pitch + x;
-      node->terminal = -terminal[p];
-      for (int d = 0; d < 4; ++d) {
-        const float value = edges[d][p];
-        node->capacity[d] = value;
-        node[offset_[d]].capacity[d ^ 4] = value;
-      }
-    }
-  }
-}
-
 double GridMaxFlow::solve() {
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) settle(&nodes_[index(x, y)]);
-  }
-  for (int y = height_ - 1; y >= 0; --y) {
-    for (int x = width_ - 1; x >= 0; --x) settle(&nodes_[index(x, y)]);
-  }
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) passOn(&nodes_[index(x, y)]);
-  }
+  for (Node* node : nodes_) passOn(node);
   plantTree();
   while (Node* node = nextActive()) {
     for (int direction = grow(node); direction >= 0; direction = grow(node)) {
@@ -67,31 +53,6 @@ double GridMaxFlow::solve() {
     }
   }
   return flow_;
-}
-
-// A node that can saturate all its edges from its own terminal may do so: in every minimum cut it lies with that
-// terminal (or may lie there), and its neighbours get what flows over.
-void GridMaxFlow::settle(Node* node) {
-  const float terminal = node->terminal;
-  if (terminal == 0.0F) return;
-  const bool source = terminal > 0.0F;
-  float sum = 0.0F;
-  for (int d = 0; d < kDirections; ++d) sum += source ? node->capacity[d] : node[offset_[d]].capacity[d ^ 4];
-  if (sum == 0.0F || sum > std::fabs(terminal)) return;
-  const float sign = source ? 1.0F : -1.0F;
-  for (int d = 0; d < kDirections; ++d) {
-    Node* other = node + offset_[d];
-    float& used = source ? node->capacity[d] : other->capacity[d ^ 4];
-    float& opposite = source ? other->capacity[d ^ 4] : node->capacity[d];
-    const float amount = used;
-    if (amount == 0.0F) continue;
-    const float missing = -sign * other->terminal;  // what the opposite terminal of the neighbour can take
-    if (missing > 0.0F) flow_ += static_cast<double>(std::min(amount, missing));
-    other->terminal += sign * amount;
-    opposite += amount;
-    used = 0.0F;
-  }
-  node->terminal = source ? std::max(terminal - sum, 0.0F) : std::min(terminal + sum, 0.0F);
 }
 
 // Augments all paths source - node - neighbour - sink.
@@ -112,16 +73,13 @@ void GridMaxFlow::passOn(Node* node) {
 }
 
 void GridMaxFlow::plantTree() {
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      Node* node = &nodes_[index(x, y)];
-      if (node->terminal < 0.0F) node->side = kSink;
-      if (node->terminal <= 0.0F) continue;
-      node->side = kSource;
-      node->parent = kTerminal;
-      node->distance = 1;
-      activate(node);
-    }
+  for (Node* node : nodes_) {
+    if (node->terminal < 0.0F) node->side = kSink;
+    if (node->terminal <= 0.0F) continue;
+    node->side = kSource;
+    node->parent = kTerminal;
+    node->distance = 1;
+    activate(node);
   }
 }
 

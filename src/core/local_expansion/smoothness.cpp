@@ -45,21 +45,6 @@ Smoothness::Smoothness(const cv::Mat& image, const SmoothnessParams& params)
   }
 }
 
-PairwiseTask Smoothness::task(const cv::Rect& region, const Labels& labels) const {
-  PairwiseTask task{};
-  task.image_width = size_.width;
-  task.x0 = region.x;
-  task.y0 = region.y;
-  task.width = region.width;
-  task.height = region.height;
-  task.a = labels.planes.a.data();
-  task.b = labels.planes.b.data();
-  task.c = labels.planes.c.data();
-  for (int d = 0; d < kPairDirections; ++d) task.weights[d] = weights_[d].data();
-  task.threshold = tau_;
-  return task;
-}
-
 double Smoothness::energy(const Labels& labels) const {
   std::vector<double> rows(size_.height, 0.0);
 #pragma omp parallel for schedule(static)

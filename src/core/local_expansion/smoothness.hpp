@@ -30,8 +30,9 @@ class Smoothness {
   float weight(int direction, int x, int y) const {
     return weights_[direction][static_cast<std::size_t>(y) * size_.width + x];
   }
-  /// Pairwise terms of `region`, to be computed into keep[].
-  PairwiseTask task(const cv::Rect& region, const Labels& labels) const;
+  /// The weights of one direction, row by row.
+  const float* weights(int direction) const { return weights_[direction].data(); }
+  float tau() const { return tau_; }
   /// The smoothness term of a whole labelling, in double.
   double energy(const Labels& labels) const;
 
