@@ -4,6 +4,11 @@
 # test/ros/<name>_test.cpp: a gtest without a roscore, or with a <name>.test beside it a rostest.
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest REQUIRED)
+  find_package(roslaunch REQUIRED)
+  roslaunch_add_file_check(launch/stereo.launch manager:=/stereo_manager)
+  foreach(launch demo doctor latency)
+    roslaunch_add_file_check(launch/${launch}.launch)
+  endforeach()
 
   function(fdp_stereo_add_ros_test name)
     set(launch ${PROJECT_SOURCE_DIR}/test/ros/${name}.test)

@@ -15,3 +15,4 @@ cmake -S . -B build-deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREF
 cmake --build build-deb
 cd build-deb
 cpack -G DEB
+rm -r _CPack_Packages # roslaunch would find its launch files beside those of the sources

@@ -57,7 +57,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   ros::WallDuration period(const std::string& name, double fallback_s) const;
   void advertise();
   void onSubscriberChange();
-  bool wanted() const;
+  WantedOutputs wanted() const;
   void subscribe();
   void unsubscribe();
 
@@ -102,7 +102,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::mutex connect_mutex_;
   bool subscribed_ = false;
   ros::Publisher disparity_, depth_info_;
-  image_transport::Publisher depth_, confidence_, seeds_image_;
+  image_transport::Publisher depth_, confidence_, seeds_image_, disparity_color_;
 
   std::mutex status_mutex_;
   NodeStatus status_;
@@ -122,6 +122,7 @@ DisparityNodelet::~DisparityNodelet() {
   depth_info_.shutdown();
   confidence_.shutdown();
   seeds_image_.shutdown();
+  disparity_color_.shutdown();
   diagnostics_timer_.stop();
   watch_timer_.stop();
   if (worker_) unsubscribe();
@@ -191,11 +192,12 @@ void DisparityNodelet::advertise() {
   depth_info_ = node.advertise<CameraInfo>("depth/camera_info", 1, changed, changed);
   confidence_ = transport_->advertise("confidence", 1, image_changed, image_changed);
   seeds_image_ = transport_->advertise("seeds/image", 1, image_changed, image_changed);
+  disparity_color_ = transport_->advertise("disparity_color", 1, image_changed, image_changed);
 }
 
 void DisparityNodelet::onSubscriberChange() {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
-  if (wanted() == subscribed_) return;
+  if (wanted().any() == subscribed_) return;
   subscribed_ = !subscribed_;
   if (subscribed_) {
     subscribe();
@@ -206,10 +208,14 @@ void DisparityNodelet::onSubscriberChange() {
   status_.subscribed = subscribed_;
 }
 
-bool DisparityNodelet::wanted() const {
-  return disparity_.getNumSubscribers() + depth_.getNumSubscribers() + depth_info_.getNumSubscribers() +
-             confidence_.getNumSubscribers() + seeds_image_.getNumSubscribers() >
-         0;
+WantedOutputs DisparityNodelet::wanted() const {
+  WantedOutputs outputs;
+  outputs.disparity = disparity_.getNumSubscribers() > 0;
+  outputs.depth = depth_.getNumSubscribers() + depth_info_.getNumSubscribers() > 0;
+  outputs.confidence = confidence_.getNumSubscribers() > 0;
+  outputs.seeds = seeds_image_.getNumSubscribers() > 0;
+  outputs.disparity_color = disparity_color_.getNumSubscribers() > 0;
+  return outputs;
 }
 
 void DisparityNodelet::subscribe() {
@@ -304,10 +310,7 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
     if (tooOld(frame, *settings)) return;
     if (!setNiceLevel(settings->node.nice)) warn("nice cannot be lowered without privileges; restart the node");
     if (forget_.exchange(false)) processor_->reset();
-    const WantedOutputs wanted{disparity_.getNumSubscribers() > 0,
-                               depth_.getNumSubscribers() + depth_info_.getNumSubscribers() > 0,
-                               confidence_.getNumSubscribers() > 0, seeds_image_.getNumSubscribers() > 0};
-    FrameOutput output = processor_->process(frame, *settings, wanted, &cancel);
+    FrameOutput output = processor_->process(frame, *settings, wanted(), &cancel);
     if (cancel) return;
     publish(output);
     recordSuccess(frame, output, start, settings->revision);
@@ -332,6 +335,7 @@ void DisparityNodelet::publish(const FrameOutput& output) {
   }
   if (output.confidence) confidence_.publish(output.confidence);
   if (output.seeds) seeds_image_.publish(output.seeds);
+  if (output.disparity_color) disparity_color_.publish(output.disparity_color);
 }
 
 void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& output, Clock::time_point start,

@@ -8,6 +8,8 @@
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/io.hpp"
+
 namespace fdp_stereo {
 namespace {
 
@@ -101,6 +103,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
     const cv::Mat drawn = drawSeeds(toEightBit(pair.left), {result.seeds, result.rejected_seeds}, range);
     output.seeds = toImageMessage(drawn, header);
   }
+  if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
   output.report.times = std::move(result.times);
   output.report.propagated_share = result.propagated_share;
   output.report.seeds = result.seeds.size();

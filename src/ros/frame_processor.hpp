@@ -25,6 +25,9 @@ struct WantedOutputs {
   bool depth = false;
   bool confidence = false;
   bool seeds = false;
+  bool disparity_color = false;
+
+  bool any() const { return disparity || depth || confidence || seeds || disparity_color; }
 };
 
 /// What is told about one pair.
@@ -45,7 +48,8 @@ struct FrameOutput {
   sensor_msgs::ImagePtr depth;
   sensor_msgs::CameraInfoPtr depth_info;
   sensor_msgs::ImagePtr confidence;
-  sensor_msgs::ImagePtr seeds;  ///< the left image with the seeds, bgr8
+  sensor_msgs::ImagePtr seeds;            ///< the left image with the seeds, bgr8
+  sensor_msgs::ImagePtr disparity_color;  ///< colours over the searched range, black = none, bgr8
   FrameReport report;
 };
 

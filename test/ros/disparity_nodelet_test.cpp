@@ -120,6 +120,10 @@ TEST(DisparityNodelet, SubscribesOnlyWhileSomebodyListens) {
   EXPECT_TRUE(graph.camera().waitForSubscribers(4));
   depth.close();
   EXPECT_TRUE(graph.camera().waitForSubscribers(0));
+  Inbox<sensor_msgs::Image> colours(graph.node(), "disparity_color");
+  EXPECT_TRUE(graph.camera().waitForSubscribers(4));
+  colours.close();
+  EXPECT_TRUE(graph.camera().waitForSubscribers(0));
   graph.disparity().open();
   ASSERT_TRUE(graph.camera().waitForSubscribers(4));
   EXPECT_TRUE(graph.process(goodMessages()));
@@ -149,6 +153,21 @@ TEST(DisparityNodelet, DepthAndConfidence) {
   EXPECT_GE(lowest, 0.0);
   EXPECT_GT(highest, 0.0);
   EXPECT_LE(highest, 1.0);
+}
+
+TEST(DisparityNodelet, ColoursForPlainImageViewers) {
+  NodeletGraph graph("/colours");
+  Inbox<sensor_msgs::Image> colours(graph.node(), "disparity_color");
+  ASSERT_TRUE(waitUntil([&] { return colours.publishers() == 1; }));
+  const auto disparity = graph.process(goodMessages());
+  ASSERT_TRUE(disparity);
+  const auto image = colours.wait([&](const auto& m) { return m.header.stamp == disparity->header.stamp; });
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->encoding, "bgr8");
+  EXPECT_EQ(image->header.frame_id, disparity->header.frame_id);
+  const cv::Mat expected = colorize(fromDisparityMessage(*disparity, {}, "disparity"), {0, 32});
+  const cv::Mat received(expected.rows, expected.cols, CV_8UC3, const_cast<std::uint8_t*>(image->data.data()));
+  EXPECT_EQ(cv::norm(received, expected, cv::NORM_INF), 0.0);
 }
 
 TEST(DisparityNodelet, ALiveEditTakesEffectAndIsWrittenBack) {

@@ -19,7 +19,7 @@ using test::kFocal;
 using test::kPlaneDisparity;
 using test::Messages;
 
-const WantedOutputs kAll{true, true, true, true};
+const WantedOutputs kAll{true, true, true, true, true};
 
 NodeSettings settings() {
   NodeSettings s;
@@ -78,8 +78,34 @@ TEST(FrameProcessor, PlaneComesOutWithItsDepth) {
 TEST(FrameProcessor, WhatNobodyWantsIsNotMade) {
   FrameProcessor processor({});
   const FrameOutput output = processor.process(goodMessages().frame(), settings(), {});
-  EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence || output.seeds);
+  EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence || output.seeds ||
+               output.disparity_color);
   EXPECT_GT(output.report.valid_share, 0.85);
+}
+
+/// Colours of the searched range, whatever the principal points are; black exactly where there is no disparity.
+TEST(FrameProcessor, ColoursOfTheDisparity) {
+  Messages messages = goodMessages();
+  messages.right_info.P[2] += 20.0;
+  const FrameOutput output = run(messages);
+  ASSERT_TRUE(output.disparity_color);
+  EXPECT_EQ(output.disparity_color->encoding, "bgr8");
+  EXPECT_EQ(output.disparity_color->header.stamp, output.disparity->header.stamp);
+  const cv::Mat map = pixels(output.disparity->image);
+  const cv::Mat colours(map.rows, map.cols, CV_8UC3, output.disparity_color->data.data(), output.disparity_color->step);
+  cv::Mat level(1, 1, CV_8UC1, cv::Scalar(std::round(255.0 * kPlaneDisparity / 31.0)));
+  cv::Mat plane_colour;
+  cv::applyColorMap(level, plane_colour, cv::COLORMAP_TURBO);
+  EXPECT_LE(cv::norm(colours.at<cv::Vec3b>(60, 80), plane_colour.at<cv::Vec3b>(0, 0), cv::NORM_INF), 12.0);
+  int wrong = 0;
+  for (int y = 0; y < map.rows; ++y) {
+    for (int x = 0; x < map.cols; ++x) {
+      const bool black = colours.at<cv::Vec3b>(y, x) == cv::Vec3b(0, 0, 0);
+      if (black != (map.at<float>(y, x) < output.disparity->min_disparity)) ++wrong;
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LT(map.at<float>(60, 3), output.disparity->min_disparity) << "the right camera cannot see it";
 }
 
 TEST(FrameProcessor, EncodingsGiveTheCoresPixels) {
