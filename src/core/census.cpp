@@ -66,37 +66,39 @@ void padRow(const cv::Mat& grey, int y, int border, T* padded) {
 }
 
 template <typename T>
-void census(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
+void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
+  thread_local std::vector<T> window;  // keep their memory from row to row
+  thread_local std::vector<std::uint8_t> bits;
+  thread_local std::vector<const T*> rows;
   const int border = params.window_width / 2;
   const std::size_t length = static_cast<std::size_t>(grey.cols) + 2 * border;
-#pragma omp parallel
-  {
-    thread_local std::vector<T> window;  // keep their memory from image to image
-    thread_local std::vector<std::uint8_t> bits;
-    thread_local std::vector<const T*> rows;
-    window.resize(length * params.window_height);
-    bits.resize(grey.cols);
-    rows.resize(params.window_height);
-#pragma omp for schedule(static)
-    for (int y = 0; y < grey.rows; ++y) {
-      for (int j = 0; j < params.window_height; ++j) {
-        padRow(grey, y + j - params.window_height / 2, border, window.data() + j * length);
-        rows[j] = window.data() + j * length;
-      }
-      censusRow(rows, grey.cols, params, bits.data(), codes.data() + static_cast<std::size_t>(y) * grey.cols);
-    }
+  window.resize(length * params.window_height);
+  bits.resize(grey.cols);
+  rows.resize(params.window_height);
+  for (int j = 0; j < params.window_height; ++j) {
+    padRow(grey, y + j - params.window_height / 2, border, window.data() + j * length);
+    rows[j] = window.data() + j * length;
   }
+  censusRow(rows, grey.cols, params, bits.data(), codes);
 }
 
 }  // namespace
 
+void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
+  check(grey, params);
+  if (grey.depth() == CV_8U) {
+    censusRowAt<std::uint8_t>(grey, params, y, codes);
+  } else {
+    censusRowAt<std::uint16_t>(grey, params, y, codes);
+  }
+}
+
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
   check(grey, params);
   codes.resize(grey.total());
-  if (grey.depth() == CV_8U) {
-    census<std::uint8_t>(grey, params, codes);
-  } else {
-    census<std::uint16_t>(grey, params, codes);
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < grey.rows; ++y) {
+    computeCensusRow(grey, params, y, codes.data() + static_cast<std::size_t>(y) * grey.cols);
   }
 }
 

@@ -38,7 +38,19 @@ cv::Mat blurred(const cv::Mat& grey, double sigma_px) {
   return result;
 }
 
-/// weight * theta(index / units, lambda) / step, in fixed point with `shift` fractional bits.
+/// Fixed-point theta: costs come in `units` per 1, weight * theta = result / 2^shift * step.
+Theta makeTheta(double units, double lambda, double weight, double step, int shift) {
+  const double limit = std::clamp(std::floor(8.0 * lambda * units), 1.0, 2047.0);
+  Theta theta{};
+  theta.limit = static_cast<std::uint16_t>(limit);
+  while ((theta.limit << (theta.shift + 1)) <= 65535) ++theta.shift;
+  const double factor = 65536.0 * 65536.0 / (16.0 * lambda * units * (1 << theta.shift));
+  theta.factor = static_cast<std::uint16_t>(std::min(std::lround(factor), 65535L));
+  theta.weight = static_cast<std::uint16_t>(std::min(weight / step * (1 << shift) * 65536.0 / kThetaOne, 65535.0));
+  return theta;
+}
+
+/// The same in a table, exactly.
 void fillThetaTable(double units, double lambda, double weight, double step, int shift,
                     std::vector<std::uint16_t>& table) {
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -51,41 +63,49 @@ void fillThetaTable(double units, double lambda, double weight, double step, int
 
 /// All that the loop over the rows reads.
 struct MatchingCost::Source {
+  CensusParams census;
   ImagePlanes left, right;
-  cv::Mat left_grey8, right_grey8;                           // of 16-bit colour images
-  std::vector<std::uint64_t> left_codes[3], right_codes[3];  // one per scale
+  cv::Mat left_grey8, right_grey8;            // of 16-bit colour images
+  cv::Mat left_blurred[3], right_blurred[3];  // one per scale
   int scales = 0;
-  std::uint16_t bit_weights[3] = {};                                                    // fixed-point w_i of eq. (7)
-  std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // fixed-point theta of eq. (9)
-  std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
+  std::uint16_t bit_weights[3] = {};  // fixed-point w_i of eq. (7)
   int shift = 0;
+  Theta rho_theta{}, census_theta{};                                                    // 8-bit volumes
+  std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // 16-bit volumes
+  std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
 
   void load(const StereoPair& pair, const MatchingCostParams& params, float step);
   void loadCensus(const StereoPair& pair, const MatchingCostParams& params);
-  void loadTables(const MatchingCostParams& params, float step);
+  void loadTheta(const MatchingCostParams& params, float step);
 };
 
 void MatchingCost::Source::loadCensus(const StereoPair& pair, const MatchingCostParams& params) {
+  census = params.census;
   scales = std::clamp(params.scales, 1, 3);
   double sum = 0.0;
   for (int i = 0; i < scales; ++i) sum += params.scale_weights[i];
   for (int i = 0; i < scales; ++i) {
-    computeCensus(blurred(pair.left_grey, params.scale_sigmas_px[i]), params.census, left_codes[i]);
-    computeCensus(blurred(pair.right_grey, params.scale_sigmas_px[i]), params.census, right_codes[i]);
+    left_blurred[i] = blurred(pair.left_grey, params.scale_sigmas_px[i]);
+    right_blurred[i] = blurred(pair.right_grey, params.scale_sigmas_px[i]);
     const double weight = sum > 0.0 ? params.scale_weights[i] / sum : 1.0 / scales;
     bit_weights[i] = static_cast<std::uint16_t>(std::lround(weight * kUnitsPerBit));
   }
 }
 
-void MatchingCost::Source::loadTables(const MatchingCostParams& params, float step) {
+void MatchingCost::Source::loadTheta(const MatchingCostParams& params, float step) {
   // Fractional bits that keep the largest cost inside 16 bits.
   shift = 0;
   while (shift < 7 && maxMatchingCost(params) / step * (2 << shift) < 65535.0) ++shift;
   const double lambda = usesGradient(params.type) ? params.lambda_rho : params.lambda_ad;
-  const bool mixed = usesCensus(params.type);
-  const double colour_weight = usesColour(params.type) ? (mixed ? params.rho_weight : 1.0) : 0.0;
-  fillThetaTable(kUnitsPerGreyLevel, lambda, colour_weight, step, shift, rho_table);
-  fillThetaTable(kUnitsPerBit, params.lambda_census, mixed ? 1.0 : 0.0, step, shift, census_table);
+  const double census_weight = usesCensus(params.type) ? 1.0 : 0.0;
+  const double colour_weight = usesColour(params.type) ? (usesCensus(params.type) ? params.rho_weight : 1.0) : 0.0;
+  if (params.bits == 8) {
+    rho_theta = makeTheta(kUnitsPerGreyLevel, lambda, colour_weight, step, shift);
+    census_theta = makeTheta(kUnitsPerBit, params.lambda_census, census_weight, step, shift);
+  } else {
+    fillThetaTable(kUnitsPerGreyLevel, lambda, colour_weight, step, shift, rho_table);
+    fillThetaTable(kUnitsPerBit, params.lambda_census, census_weight, step, shift, census_table);
+  }
 }
 
 void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams& params, float step) {
@@ -94,18 +114,18 @@ void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams
   left.clear();
   right.clear();
   if (params.type == MatchingCostType::kBirchfieldTomasi) {
-    left.makeBirchfieldTomasi(grey_left);
-    right.makeBirchfieldTomasi(grey_right);
+    left.useBirchfieldTomasi(grey_left);
+    right.useBirchfieldTomasi(grey_right);
   } else if (usesGradient(params.type)) {
-    left.makeRho(pair.left, grey_left, params.alpha);
-    right.makeRho(pair.right, grey_right, params.alpha);
+    left.useRho(pair.left, grey_left, params.alpha);
+    right.useRho(pair.right, grey_right, params.alpha);
   } else if (usesColour(params.type)) {
-    left.makeColour(pair.left);
-    right.makeColour(pair.right);
+    left.useColour(pair.left);
+    right.useColour(pair.right);
   }
   scales = 0;
   if (usesCensus(params.type)) loadCensus(pair, params);
-  loadTables(params, step);
+  loadTheta(params, step);
 }
 
 namespace {
@@ -121,31 +141,48 @@ void reverseRow(const T* row, int width, int min, int length, T* right) {
 
 /// Buffers of one thread for one row.
 struct RowScratch {
-  std::vector<std::int16_t> right;         // planes, reversed
-  std::vector<std::uint64_t> codes[3];     // per scale, reversed
+  std::vector<std::int16_t> left, right;               // planes; right ones reversed
+  std::vector<std::uint64_t> left_codes, right_codes;  // [scale]; right ones reversed
+  std::vector<std::int16_t> planes;                    // of the right row, as they come
+  std::vector<std::uint64_t> codes;
   std::vector<std::uint16_t> rho, census;  // of one pixel
 };
 
+void loadPlanes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  const int count = source.left.count();
+  scratch.left.resize(static_cast<std::size_t>(count) * width);
+  scratch.planes.resize(static_cast<std::size_t>(count) * width);
+  scratch.right.resize(static_cast<std::size_t>(count) * length);
+  source.left.fillRow(y, scratch.left.data());
+  source.right.fillRow(y, scratch.planes.data());
+  for (std::ptrdiff_t c = 0; c < count; ++c) {
+    reverseRow(scratch.planes.data() + c * width, width, min, length, scratch.right.data() + c * length);
+  }
+}
+
+void loadCodes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  scratch.left_codes.resize(static_cast<std::size_t>(source.scales) * width);
+  scratch.codes.resize(width);
+  scratch.right_codes.resize(static_cast<std::size_t>(source.scales) * length);
+  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
+    computeCensusRow(source.left_blurred[i], source.census, y, scratch.left_codes.data() + i * width);
+    computeCensusRow(source.right_blurred[i], source.census, y, scratch.codes.data());
+    reverseRow(scratch.codes.data(), width, min, length, scratch.right_codes.data() + i * length);
+  }
+}
+
 void loadRow(const CostSource& source, int y, int width, const CostVolume& volume, RowScratch& scratch) {
   const int length = width + volume.stride();
-  const int min = volume.range().min;
-  scratch.right.resize(static_cast<std::size_t>(source.right.count()) * length);
-  for (int c = 0; c < source.right.count(); ++c) {
-    reverseRow(source.right.row(c, y), width, min, length, scratch.right.data() + static_cast<std::size_t>(c) * length);
-  }
-  for (int i = 0; i < source.scales; ++i) {
-    scratch.codes[i].resize(length);
-    reverseRow(source.right_codes[i].data() + static_cast<std::size_t>(y) * width, width, min, length,
-               scratch.codes[i].data());
-  }
+  if (source.left.count() > 0) loadPlanes(source, y, width, volume.range().min, length, scratch);
+  loadCodes(source, y, width, volume.range().min, length, scratch);
   scratch.rho.assign(volume.stride(), 0);
   scratch.census.assign(volume.stride(), 0);
 }
 
 void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
              std::uint8_t* costs) {
-  kernels.combineU8(scratch.rho.data(), source.rho_table.data(), scratch.census.data(), source.census_table.data(),
-                    count, source.shift, costs);
+  kernels.combineU8(scratch.rho.data(), source.rho_theta, scratch.census.data(), source.census_theta, count,
+                    source.shift, costs);
 }
 void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
              std::uint16_t* costs) {
@@ -154,27 +191,25 @@ void combine(const MatchingCostKernels& kernels, const CostSource& source, const
 }
 
 template <typename T>
-void costsOfPixel(const CostSource& source, MatchingCostType type, int y, int x, int width, RowScratch& scratch,
-                  CostVolume& volume) {
+void costsOfPixel(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
+                  int stride, T* costs) {
   const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
-  const int count = volume.range().count;
-  const int length = width + volume.stride();
+  const int length = width + stride;
   const int offset = width - 1 - x;
   const int planes = source.left.count();
   std::int16_t left[5] = {};
-  for (int c = 0; c < planes; ++c) left[c] = source.left.row(c, y)[x];
+  for (int c = 0; c < planes; ++c) left[c] = scratch.left[static_cast<std::size_t>(c) * width + x];
   const std::int16_t* right = scratch.right.data() + offset;
   if (type == MatchingCostType::kBirchfieldTomasi) {
     kernels.birchfieldTomasi(left, right, length, count, kMaxRhoUnits, scratch.rho.data());
   } else if (planes > 0) {
     kernels.absoluteDifferences(left, right, planes, length, count, kMaxRhoUnits, scratch.rho.data());
   }
-  for (int i = 0; i < source.scales; ++i) {
-    const std::uint64_t code = source.left_codes[i][static_cast<std::size_t>(y) * width + x];
-    kernels.hamming(code, scratch.codes[i].data() + offset, count, source.bit_weights[i], i == 0,
-                    scratch.census.data());
+  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
+    kernels.hamming(scratch.left_codes[i * width + x], scratch.right_codes.data() + i * length + offset, count,
+                    source.bit_weights[i], i == 0, scratch.census.data());
   }
-  combine(kernels, source, scratch, count, volume.at<T>(y, x));
+  combine(kernels, source, scratch, count, costs);
 }
 
 /// Repeats the nearest valid cost along d where x - d is outside the right image.
@@ -214,8 +249,9 @@ void fillVolume(const CostSource& source, const MatchingCostParams& params, Cost
     for (int y = 0; y < volume.height(); ++y) {
       loadRow(source, y, width, volume, scratch);
       for (int x = 0; x < width; ++x) {
-        costsOfPixel<T>(source, params.type, y, x, width, scratch, volume);
-        repeatBorder(volume.at<T>(y, x), x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
+        T* costs = volume.at<T>(y, x);
+        costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
+        repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
       }
       if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
     }
