@@ -37,6 +37,8 @@ if(FDP_STEREO_ROS)
   add_test(NAME install_space_test COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/install/install_test.py)
   set_tests_properties(install_space_test PROPERTIES LABELS install
     ENVIRONMENT "FDP_STEREO_BUILD=${PROJECT_BINARY_DIR};FDP_STEREO_SOURCE=${PROJECT_SOURCE_DIR}")
+  add_test(NAME workspaces_configure COMMAND ${PROJECT_SOURCE_DIR}/scripts/test_workspaces.sh --quick)
+  set_tests_properties(workspaces_configure PROPERTIES LABELS install)
 endif()
 
 add_test(NAME docs_parameters_are_current

@@ -23,7 +23,7 @@ run_packages=(
 )
 test_packages=(
   libgtest-dev libbenchmark-dev librostest-dev python3-rostest python3-tf2-ros
-  clang clang-format clang-tidy libomp-dev libclang-rt-dev shellcheck catkin-lint chromium chromium-driver doxygen graphviz
+  clang clang-format clang-tidy libomp-dev libclang-rt-dev shellcheck catkin-lint catkin-tools chromium chromium-driver doxygen graphviz
 )
 
 packages=("${build_packages[@]}" "${run_packages[@]}")
