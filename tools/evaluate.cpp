@@ -28,6 +28,7 @@ struct Options {
   std::string shard;
   RunOptions run;
   PipelineOptions pipeline;
+  std::string command;  ///< the command line, for the page
   SeedSimulation seeds = {0.0, 0.25, 0.05, 1};
 };
 
@@ -94,6 +95,12 @@ int reportFailures(const std::vector<Failure>& failures) {
   return failures.empty() ? 0 : 1;
 }
 
+std::string joinWords(int argc, char** argv) {
+  std::string text = fs::path(argv[0]).filename().string();
+  for (int i = 1; i < argc; ++i) text += std::string(" ") + argv[i];
+  return text;
+}
+
 std::string conditionsOf(const Options& options) {
   std::string text =
       options.run.all_pixels ? "All pixels with a truth are scored." : "Pixels that both cameras see are scored.";
@@ -106,7 +113,7 @@ int merge(const Options& options) {
   if (folder.empty()) throw UsageError("--merge needs --report, the folder with the parts");
   const std::vector<ResultRow> rows = mergeShards(folder);
   writeCsv((fs::path(folder) / shardTableName(1, 1)).string(), rows);
-  writeReport(folder, rows, "Put together from the tables of several runs.");
+  writeReport(folder, rows, {"Put together from the tables of several runs.", options.command});
   if (!options.csv.empty()) writeCsv(options.csv, rows);
   std::cout << tableText(rows);
   return 0;
@@ -120,7 +127,9 @@ int evaluate(Options& options) {
   if (!outcome.rows.empty()) std::cout << tableText(outcome.rows);
   if (!options.csv.empty()) writeCsv(options.csv, outcome.rows);
   const bool whole = options.run.shard_count == 1;
-  if (!options.run.folder.empty() && whole) writeReport(options.run.folder, outcome.rows, conditionsOf(options));
+  if (!options.run.folder.empty() && whole) {
+    writeReport(options.run.folder, outcome.rows, {conditionsOf(options), options.command});
+  }
   return reportFailures(outcome.failures);
 }
 
@@ -130,6 +139,7 @@ int evaluate(Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("Disparity errors on scenes with known truth", "evaluate");
   fdp_stereo::Options options;
+  options.command = fdp_stereo::joinWords(argc, argv);
   fdp_stereo::addOptions(app, options);
   return fdp_stereo::runTool(app, argc, argv, [&] { return fdp_stereo::evaluate(options); });
 }

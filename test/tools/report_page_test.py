@@ -97,6 +97,19 @@ class ReportPageTest(unittest.TestCase):
         values = [float(value) for value in self.column("means", 5)]
         self.assertEqual(marked, [value == min(values) for value in values])
 
+    def test_2_where_all_are_equal_none_is_marked(self):
+        best = self.browser.script("return [...document.querySelectorAll('#scenes tbody tr')].map(row => "
+                                   "[row.children[0].textContent, row.children[7].textContent,"
+                                   " row.children[7].classList.contains('best')])")
+        for scene in {row[0] for row in best}:
+            densities = {row[1] for row in best if row[0] == scene}
+            marked = [row for row in best if row[0] == scene and row[2]]
+            self.assertEqual(bool(marked), len(densities) > 1, scene)
+
+    def test_2_the_command_is_told(self):
+        command = self.browser.script("return document.getElementById('command').textContent")
+        self.assertRegex(command, r"^evaluate .*--preset fast --preset paper --peers")
+
     def test_3_a_click_sorts_and_a_second_one_turns_round(self):
         self.browser.click("#means th:nth-child(6)")
         ascending = [float(value) for value in self.column("means", 5)]

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 
 #include "evaluation/pictures.hpp"
@@ -31,6 +33,12 @@ void addPicture(JsonWriter& json, const std::string& folder, const std::string& 
   if (fs::exists(fs::path(folder) / file)) json.open('{').add("file", file).add("caption", caption).close('}');
 }
 
+std::string fixed(double value, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
 /// Per scene one line of pictures of the input, then one per method.
 void addPictures(JsonWriter& json, const std::string& folder, const std::vector<ResultRow>& rows) {
   json.open('[', "pictures");
@@ -46,9 +54,13 @@ void addPictures(JsonWriter& json, const std::string& folder, const std::vector<
     for (const ResultRow& row : rows) {
       if (row.scene != scene) continue;
       json.open('[');
-      for (const char* kind : {"disparity", "errors", "invalid", "seeds"}) {
-        addPicture(json, folder, pictureName(scene, row.method, kind), row.method + ": " + kind);
-      }
+      const auto add = [&](const char* kind, const std::string& caption) {
+        addPicture(json, folder, pictureName(scene, row.method, kind), row.method + ": " + caption);
+      };
+      add("disparity", "disparity");
+      add("errors", "errors, bad 1 " + fixed(row.errors.bad[3], 2) + " %");
+      add("invalid", "without disparity (magenta)");
+      add("seeds", "seeds");
       json.close(']');
     }
     json.close(']').close('}');
@@ -56,9 +68,9 @@ void addPictures(JsonWriter& json, const std::string& folder, const std::vector<
   json.close(']');
 }
 
-std::string reportJson(const std::string& folder, const std::vector<ResultRow>& rows, const std::string& conditions) {
+std::string reportJson(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin) {
   JsonWriter json;
-  json.open('{').add("conditions", conditions).open('[', "columns");
+  json.open('{').add("conditions", origin.conditions).add("command", origin.command).open('[', "columns");
   for (const Column& column : resultColumns()) {
     json.open('{').add("name", column.name).add("heading", column.heading);
     json.add("better", column.better == Better::kSmaller  ? "smaller"
@@ -80,10 +92,10 @@ bool parseShardName(const std::string& name, int& index, int& count) {
 
 }  // namespace
 
-void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const std::string& conditions) {
+void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin) {
   std::string page = kReportTemplate;
   const std::string mark = "/*REPORT*/";
-  page.replace(page.find(mark), mark.size(), reportJson(folder, rows, conditions));
+  page.replace(page.find(mark), mark.size(), reportJson(folder, rows, origin));
   const std::string path = (fs::path(folder) / "index.html").string();
   std::ofstream file(path);
   file << page;

@@ -9,9 +9,15 @@
 
 namespace fdp_stereo {
 
-/// Writes index.html into the folder of the pictures: one page with all tables, that needs no network. `conditions`
-/// says how the figures came about. Throws std::runtime_error naming a file that cannot be written.
-void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const std::string& conditions);
+/// How the figures came about, for the reader of the page.
+struct ReportOrigin {
+  std::string conditions;  ///< sentences
+  std::string command;     ///< the command line
+};
+
+/// Writes index.html into the folder of the pictures: one page with all tables, that needs no network. Throws
+/// std::runtime_error naming a file that cannot be written.
+void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin);
 
 /// Rows of every shard's table in the folder (or of results.csv where there are no shards), sorted by scene. Throws
 /// std::runtime_error where there is none or a shard is missing.
