@@ -20,8 +20,8 @@ cv::Mat readDisparity(const std::string& path, double png_scale = 256.0);
 /// cannot hold (negative, or 256 px and more).
 void writeDisparity(const std::string& path, const cv::Mat& disparity);
 
-/// Reads an image as it is: CV_8U or CV_16U, 1 or 3 (BGR; transparency dropped) channels. Throws std::runtime_error
-/// naming the file and what is wrong with it.
+/// Reads a PNG, JPEG, TIFF, BMP, WebP or PNM image as it is: CV_8U or CV_16U, 1 or 3 (BGR; transparency dropped)
+/// channels. Throws std::runtime_error naming the file and what is wrong with it.
 cv::Mat readImage(const std::string& path);
 /// Writes an image by the extension of `path`. Throws std::runtime_error naming the file.
 void writeImage(const std::string& path, const cv::Mat& image);

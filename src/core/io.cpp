@@ -164,13 +164,23 @@ void checkPng(std::ifstream& file, const std::string& path) {
   fail(path, "truncated PNG");
 }
 
-void checkIfPng(const std::string& path) {
+/// Formats with decoders that stand any content; OpenCV knows others by their content, and one of them ends the
+/// process.
+void checkFormat(const std::string& path) {
+  using namespace std::string_literals;
+  static const std::string kPng = "\x89PNG\r\n\x1a\n";
+  static const std::array<std::string, 5> kOthers = {"\xff\xd8\xff", "BM", "II*\0"s, "MM\0*"s, "RIFF"};
   std::ifstream file = open(path);
-  std::array<char, 8> magic{};
-  file.read(magic.data(), magic.size());
-  if (!file || std::memcmp(magic.data(), "\x89PNG\r\n\x1a\n", magic.size()) != 0) return;
+  std::string magic(kPng.size(), '\0');
+  file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  file.clear();
   file.seekg(0);
-  checkPng(file, path);
+  if (magic == kPng) return checkPng(file, path);
+  const auto starts = [&](const std::string& with) { return magic.compare(0, with.size(), with) == 0; };
+  const bool pnm = magic[0] == 'P' && magic[1] >= '1' && magic[1] <= '6';
+  if (!pnm && std::none_of(kOthers.begin(), kOthers.end(), starts)) {
+    fail(path, "not readable as an image: not PNG, JPEG, TIFF, BMP, WebP or PNM");
+  }
 }
 
 /// One channel of a picture that stores grey as three equal ones.
@@ -254,7 +264,7 @@ void writeDisparity(const std::string& path, const cv::Mat& disparity) {
 }
 
 cv::Mat readImage(const std::string& path) {
-  checkIfPng(path);
+  checkFormat(path);
   cv::Mat image;
   try {
     image = cv::imread(path, cv::IMREAD_UNCHANGED);

@@ -188,6 +188,22 @@ TEST(ReadImage, RefusesBrokenPngs) {
   expectContains(errorOf([&] { readImage(write("bomb.png", bomb)); }), "claims 2147483647 x");
 }
 
+TEST(ReadImage, TakesTheFormatsItNames) {
+  const cv::Mat image(5, 7, CV_8UC3, cv::Scalar(10, 20, 30));
+  for (const char* type : {"png", "jpg", "tiff", "bmp", "webp", "ppm"}) {
+    const std::string path = testing::TempDir() + "image." + type;
+    ASSERT_TRUE(cv::imwrite(path, image)) << type;
+    EXPECT_EQ(readImage(path).size(), image.size()) << type;
+  }
+}
+
+/// Found by the fuzzer: OpenCV takes this for DICOM by its content, whose library ends the process on it.
+TEST(ReadImage, RefusesWhatOpenCvWouldTakeForAnotherFormat) {
+  std::string dicom(128, '\xd5');
+  dicom += "DICM2 V";
+  expectContains(errorOf([&] { readImage(write("picture.png", dicom)); }), "not PNG");
+}
+
 TEST(ReadImage, NamesTheFile) {
   expectContains(errorOf([] { readImage("/does/not/exist.png"); }), "/does/not/exist.png: missing");
   expectContains(errorOf([] { readImage(testing::TempDir()); }), testing::TempDir());
