@@ -11,6 +11,7 @@ add_library(fdp_stereo_nodelet
   src/ros/seed_sources.cpp
   src/ros/frame_processor.cpp
   src/ros/node_status.cpp
+  src/ros/periodic_task.cpp
   src/ros/diagnosis.cpp
   src/ros/thread_priority.cpp
   src/ros/disparity_nodelet.cpp

@@ -23,6 +23,11 @@ constexpr double kMaxFocalDifference = 0.01;
 /// Rows that differ by more are no rectified pair.
 constexpr double kMaxRowDifferencePx = 2.0;
 constexpr std::uint64_t kMaxSidePx = 65535;
+/// Beyond these a calibration is a mistake, and its values no longer fit the floats of a message.
+constexpr double kMaxFocalPx = 1e6;
+constexpr double kMaxCentrePx = 1e6;
+constexpr double kMinBaselineM = 1e-4;
+constexpr double kMaxBaselineM = 1e3;
 
 template <typename... Parts>
 std::string text(const Parts&... parts) {
@@ -77,8 +82,8 @@ const Encoding& findEncoding(const std::string& name, const std::string& topic) 
   const auto& table = encodings();
   const auto found = std::find_if(table.begin(), table.end(), [&](const Encoding& e) { return e.name == name; });
   if (found == table.end()) {
-    fail(topic, ": encoding '", name.substr(0, 40),
-         "' is not a camera image; publish mono8, mono16, bgr8, rgb8, a bayer or a yuv422 encoding");
+    fail(topic, ": encoding ", quoteForLog(name),
+         " is not a camera image; publish mono8, mono16, bgr8, rgb8, a bayer or a yuv422 encoding");
   }
   return *found;
 }
@@ -164,8 +169,10 @@ void checkProjection(const sensor_msgs::CameraInfo& info, const std::string& top
   if (std::all_of(info.P.begin(), info.P.end(), [](double p) { return p == 0.0; })) {
     fail(topic, ": P is all 0: the camera is not calibrated; run camera_calibration or load its file in the driver");
   }
-  if (!(info.P[0] > 0.0) || !(info.P[5] > 0.0)) {
-    fail(topic, ": focal length P[0] = ", info.P[0], ", P[5] = ", info.P[5], " must be > 0; calibrate the camera");
+  const auto possible = [](double focal_px) { return focal_px > 0.0 && focal_px <= kMaxFocalPx; };
+  if (!possible(info.P[0]) || !possible(info.P[5])) {
+    fail(topic, ": focal length P[0] = ", info.P[0], ", P[5] = ", info.P[5], " must be > 0 and at most ", kMaxFocalPx,
+         " px; calibrate the camera");
   }
 }
 
@@ -194,6 +201,12 @@ Projection project(const sensor_msgs::CameraInfo& info) {
           info.P[3] / bx};
 }
 
+void checkCentre(const Projection& camera, const std::string& topic) {
+  if (std::abs(camera.cx) <= kMaxCentrePx && std::abs(camera.cy) <= kMaxCentrePx) return;
+  fail(topic, ": centre P[2] = ", camera.cx, ", P[6] = ", camera.cy, " px after binning and roi offset is beyond ",
+       kMaxCentrePx, " px; correct them, or calibrate the camera anew");
+}
+
 void checkBaseline(const Projection& right, const StereoTopics& topics) {
   if (right.tx == 0.0) {
     fail(topics.right_info, ": P[3] = 0, so the baseline is 0: this is the calibration of a single or of the left ",
@@ -201,6 +214,11 @@ void checkBaseline(const Projection& right, const StereoTopics& topics) {
   }
   if (right.tx > 0.0) {
     fail(topics.right_info, ": P[3] = ", right.tx, " > 0: left and right are swapped; exchange the topics or cameras");
+  }
+  const double baseline_m = -right.tx / right.fx;
+  if (!(baseline_m >= kMinBaselineM && baseline_m <= kMaxBaselineM)) {
+    fail(topics.right_info, ": P[3] = ", right.tx, " is a baseline of ", baseline_m, " m; ", kMinBaselineM, " to ",
+         kMaxBaselineM, " m are possible: calibrate the cameras anew, in metres");
   }
 }
 
@@ -228,6 +246,14 @@ void checkPair(const Projection& left, const Projection& right, const StereoTopi
 
 }  // namespace
 
+std::string quoteForLog(const std::string& text) {
+  constexpr std::size_t kLongest = 40;
+  std::string safe = text.substr(0, kLongest);
+  std::replace_if(
+      safe.begin(), safe.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + safe + "'";
+}
+
 cv::Mat decodeImage(const sensor_msgs::Image& message, const std::string& topic) {
   const Encoding& encoding = findEncoding(message.encoding, topic);
   checkLayout(message, CV_ELEM_SIZE(encoding.type), topic);
@@ -250,11 +276,14 @@ StereoGeometry stereoGeometry(const sensor_msgs::CameraInfo& left, const sensor_
   checkSize(right, image_size, topics.right_info, warnings);
   const Projection l = project(left);
   const Projection r = project(right);
+  checkCentre(l, topics.left_info);
+  checkCentre(r, topics.right_info);
   checkBaseline(r, topics);
   checkPair(l, r, topics, warnings);
   if (left.header.frame_id != right.header.frame_id) {
-    warnings.push_back(text(topics.right_info, ": frame_id '", right.header.frame_id, "' differs from the left's '",
-                            left.header.frame_id, "'; a rectified pair shares the left optical frame"));
+    warnings.push_back(text(topics.right_info, ": frame_id ", quoteForLog(right.header.frame_id),
+                            " differs from the left's ", quoteForLog(left.header.frame_id),
+                            "; a rectified pair shares the left optical frame"));
   }
   return {r.fx, -r.tx / r.fx, l.cx - r.cx};
 }
@@ -290,7 +319,7 @@ stereo_msgs::DisparityImagePtr toDisparityMessage(const cv::Mat& disparity, cons
 
 cv::Mat decodeFloatImage(const sensor_msgs::Image& message, const std::string& topic) {
   if (message.encoding != enc::TYPE_32FC1) {
-    fail(topic, ": encoding '", message.encoding.substr(0, 40), "' is not 32FC1");
+    fail(topic, ": encoding ", quoteForLog(message.encoding), " is not 32FC1");
   }
   checkLayout(message, sizeof(float), topic);
   if ((message.is_bigendian != 0) != hostIsBigEndian()) fail(topic, ": floats with the bytes in the other order");

@@ -14,6 +14,9 @@
 /// Messages to and from the core, as pure functions: no node, no clock, no state.
 namespace fdp_stereo {
 
+/// A text from a message as it may stand in a log line: in quotes, at most 40 characters, what is not printable as '?'.
+std::string quoteForLog(const std::string& text);
+
 /// Names of the inputs for messages to people; relative or resolved.
 struct StereoTopics {
   std::string left_image = "left/image_rect";

@@ -11,6 +11,7 @@
 #include "fdp_stereo/feature_matching.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/row_alignment.hpp"
+#include "stamps.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -54,7 +55,7 @@ bool checkTopics(const Observation& seen, Findings& findings) {
 /// Distance in time to the nearest stamp, s.
 double nearest(const std::vector<ros::Time>& stamps, const ros::Time& stamp) {
   double best = 1e9;
-  for (const ros::Time& other : stamps) best = std::min(best, std::abs((other - stamp).toSec()));
+  for (const ros::Time& other : stamps) best = std::min(best, std::abs(secondsBetween(other, stamp)));
   return best;
 }
 

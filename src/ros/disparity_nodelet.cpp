@@ -5,8 +5,10 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <new>
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <image_transport/exception.h>
 #include <image_transport/image_transport.h>
 #include <message_filters/pass_through.h>
 #include <message_filters/sync_policies/approximate_time.h>
@@ -19,8 +21,10 @@
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
 #include "node_status.hpp"
+#include "periodic_task.hpp"
 #include "reconfigure_server.hpp"
 #include "seed_sources.hpp"
+#include "stamps.hpp"
 #include "thread_priority.hpp"
 
 namespace fdp_stereo {
@@ -35,7 +39,8 @@ using ExactPolicy = message_filters::sync_policies::ExactTime<Image, CameraInfo,
 using ApproximatePolicy = message_filters::sync_policies::ApproximateTime<Image, CameraInfo, Image, CameraInfo>;
 
 /// A stamp that is older than its predecessor by more than this is a bag that starts again, not a late message.
-const ros::Duration kJumpBack(0.5);
+constexpr double kJumpBack = 0.5;           // s
+constexpr double kLongestTolerance = 60.0;  // s
 constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr double kWatchPeriod = 15.0;       // s
 constexpr auto kLogPeriod = std::chrono::seconds(10);
@@ -54,11 +59,12 @@ class DisparityNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() override;
-  ros::WallDuration period(const std::string& name, double fallback_s) const;
+  std::chrono::duration<double> period(const std::string& name, double fallback_s) const;
   void advertise();
   void onSubscriberChange();
   WantedOutputs wanted() const;
   void subscribe();
+  void subscribeImages(const ros::TransportHints& hints);
   void unsubscribe();
 
   template <typename Message>
@@ -110,21 +116,23 @@ class DisparityNodelet : public nodelet::Nodelet {
   Clock::time_point diagnosed_at_, watched_at_;
   LogThrottle throttle_{kLogPeriod, kMaxLogLines};
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
-  ros::WallTimer diagnostics_timer_, watch_timer_;
+  std::unique_ptr<PeriodicTask> diagnostics_task_, watch_task_;
 
   std::unique_ptr<FrameWorker> worker_;
 };
 
-/// From the sources of callbacks to what they use; shutdown() waits for a callback that runs in another thread.
+/// The worker first, for a publisher that is shut down must not be used; then from the sources of callbacks to what
+/// they use: shutdown() waits for a callback that runs in another thread.
 DisparityNodelet::~DisparityNodelet() {
+  if (worker_) worker_->stop();
   disparity_.shutdown();
   depth_.shutdown();
   depth_info_.shutdown();
   confidence_.shutdown();
   seeds_image_.shutdown();
   disparity_color_.shutdown();
-  diagnostics_timer_.stop();
-  watch_timer_.stop();
+  diagnostics_task_.reset();
+  watch_task_.reset();
   if (worker_) unsubscribe();
   worker_.reset();
   reconfigure_.reset();
@@ -145,6 +153,11 @@ void DisparityNodelet::onInit() {
   if (queue_size_ < 1) {
     warn("~queue_size = " + std::to_string(queue_size_) + " must be at least 1; using 1");
     queue_size_ = 1;
+  }
+  if (!(tolerance_s_ >= 0.0 && tolerance_s_ <= kLongestTolerance)) {
+    warn("~approximate_sync_tolerance = " + std::to_string(tolerance_s_) + " s must be 0 to " +
+         std::to_string(kLongestTolerance) + " s; using 0, which is none");
+    tolerance_s_ = 0.0;
   }
   status_.approximate_sync = approximate_sync_;
   resetSynchronizer();
@@ -167,17 +180,17 @@ void DisparityNodelet::onInit() {
   diagnostics_ = std::make_unique<diagnostic_updater::Updater>(node, private_node, getName());
   diagnostics_->setHardwareID("none");
   diagnostics_->add("Disparity", this, &DisparityNodelet::onDiagnostics);
-  diagnostics_timer_ = node.createWallTimer(period("diagnostic_period", kDiagnosticsPeriod),
-                                            [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
-  watch_timer_ =
-      node.createWallTimer(period("watch_period", kWatchPeriod), [this](const ros::WallTimerEvent&) { watch(); });
+  diagnostics_task_ = std::make_unique<PeriodicTask>(period("diagnostic_period", kDiagnosticsPeriod),
+                                                     [this] { diagnostics_->force_update(); });
+  // The question to a master that is out of reach may take long: not in the queue of the images.
+  watch_task_ = std::make_unique<PeriodicTask>(period("watch_period", kWatchPeriod), [this] { watch(); });
   advertise();
 }
 
-ros::WallDuration DisparityNodelet::period(const std::string& name, double fallback_s) const {
+std::chrono::duration<double> DisparityNodelet::period(const std::string& name, double fallback_s) const {
   constexpr double kShortest = 0.02;  // s
   const double wanted = getPrivateNodeHandle().param(name, fallback_s);
-  return ros::WallDuration(wanted >= kShortest && wanted <= 3600.0 ? wanted : fallback_s);
+  return std::chrono::duration<double>(wanted >= kShortest && wanted <= 3600.0 ? wanted : fallback_s);
 }
 
 void DisparityNodelet::advertise() {
@@ -220,18 +233,32 @@ WantedOutputs DisparityNodelet::wanted() const {
 
 void DisparityNodelet::subscribe() {
   ros::NodeHandle& node = getNodeHandle();
-  const image_transport::TransportHints hints("raw", ros::TransportHints().tcpNoDelay(), getPrivateNodeHandle());
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  try {
+    subscribeImages(no_delay);
+  } catch (const image_transport::Exception& error) {
+    warn("~image_transport: " + std::string(error.what()) + "; using raw");
+    getPrivateNodeHandle().setParam("image_transport", "raw");
+    subscribeImages(no_delay);
+  }
+  left_info_ = node.subscribe<CameraInfo>(
+      "left/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kLeftInfo, m, left_info_filter_); },
+      ros::VoidConstPtr(), no_delay);
+  right_info_ = node.subscribe<CameraInfo>(
+      "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kRightInfo, m, right_info_filter_); },
+      ros::VoidConstPtr(), no_delay);
+  seeds_->subscribe();
+}
+
+/// Throws image_transport::Exception where ~image_transport names no transport that there is.
+void DisparityNodelet::subscribeImages(const ros::TransportHints& ros_hints) {
+  const image_transport::TransportHints hints("raw", ros_hints, getPrivateNodeHandle());
   left_image_ = transport_->subscribe(
       "left/image_rect", 1, [this](const ImageConstPtr& m) { onInput(kLeftImage, m, left_image_filter_); },
       ros::VoidPtr(), hints);
   right_image_ = transport_->subscribe(
       "right/image_rect", 1, [this](const ImageConstPtr& m) { onInput(kRightImage, m, right_image_filter_); },
       ros::VoidPtr(), hints);
-  left_info_ = node.subscribe<CameraInfo>(
-      "left/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kLeftInfo, m, left_info_filter_); });
-  seeds_->subscribe();
-  right_info_ = node.subscribe<CameraInfo>(
-      "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kRightInfo, m, right_info_filter_); });
 }
 
 void DisparityNodelet::unsubscribe() {
@@ -251,7 +278,7 @@ void DisparityNodelet::onInput(Input input, const boost::shared_ptr<const Messag
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
     InputStatus& status = status_.inputs[input];
-    jumped_back = status.received > 0 && stamp + kJumpBack < status.stamp;
+    jumped_back = status.received > 0 && secondsBetween(stamp, status.stamp) > kJumpBack;
     ++status.received;
     status.stamp = stamp;
     if (jumped_back) {
@@ -263,7 +290,13 @@ void DisparityNodelet::onInput(Input input, const boost::shared_ptr<const Messag
     last_taken_ = ros::Time();
     forget_ = true;
   }
-  to.add(message);
+  try {
+    to.add(message);
+  } catch (const std::runtime_error&) {  // ApproximateTime computes with stamps, which may be anything
+    warn(status_.inputs[input].topic + ": stamp " + std::to_string(stamp.toSec()) +
+         " s is too far from the others'; check the clock of the camera");
+    resetSynchronizer();
+  }
 }
 
 void DisparityNodelet::resetSynchronizer() {
@@ -297,8 +330,8 @@ void DisparityNodelet::onPair(const ImageConstPtr& left, const CameraInfoConstPt
 bool DisparityNodelet::overRate(const ros::Time& stamp) {
   constexpr double kJitter = 0.05;  // of a period
   const double max_rate = reconfigure_->settings()->node.max_rate_hz;
-  const double passed = (stamp - last_taken_).toSec();
-  if (max_rate > 0.0 && passed >= 0.0 && passed * max_rate < 1.0 - kJitter) return true;
+  const double passed = secondsBetween(last_taken_, stamp);  // 0 where the driver does not stamp its images
+  if (max_rate > 0.0 && passed > 0.0 && passed * max_rate < 1.0 - kJitter) return true;
   last_taken_ = stamp;
   return false;
 }
@@ -314,6 +347,8 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
     if (cancel) return;
     publish(output);
     recordSuccess(frame, output, start, settings->revision);
+  } catch (const std::bad_alloc&) {
+    recordFailure("out of memory; lower disparity_range or scale, and max_memory_mb to what this machine has");
   } catch (const std::exception& error) {
     recordFailure(error.what());
   }
@@ -321,7 +356,7 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
 
 bool DisparityNodelet::tooOld(const StereoFrame& frame, const NodeSettings& settings) {
   const double max_age = settings.node.max_age_s;
-  if (max_age <= 0.0 || (ros::Time::now() - frame.left->header.stamp).toSec() <= max_age) return false;
+  if (max_age <= 0.0 || secondsBetween(frame.left->header.stamp, ros::Time::now()) <= max_age) return false;
   const std::lock_guard<std::mutex> lock(status_mutex_);
   ++status_.too_old;
   return true;
@@ -347,7 +382,7 @@ void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& outp
   status_.error_is_current = false;
   status_.processing_ms = milliseconds(now - start);
   status_.latency_ms = milliseconds(now - frame.arrival);
-  status_.age_ms = (ros::Time::now() - frame.left->header.stamp).toSec() * 1e3;
+  status_.age_ms = secondsBetween(frame.left->header.stamp, ros::Time::now()) * 1e3;
   status_.revision = revision;
   status_.frame = std::move(output.report);
 }

@@ -43,6 +43,16 @@ void checkRange(DisparityRange range, int width, std::vector<std::string>& warni
   }
 }
 
+/// What others do with the result needs both.
+void checkHeader(const std_msgs::Header& header, const std::string& topic, std::vector<std::string>& warnings) {
+  if (header.stamp.isZero()) {
+    warnings.push_back(topic + ": stamp is 0; the driver must stamp its images: seeds, max_rate and max_age need it");
+  }
+  if (header.frame_id.empty()) {
+    warnings.push_back(topic + ": frame_id '' is empty; set it in the driver: tf and points need it");
+  }
+}
+
 /// Filled or not, what the right camera cannot see stays unknown: consumers rely on a map that is not fully dense.
 void dropUnseen(cv::Mat& disparity) {
   for (int y = 0; y < disparity.rows; ++y) {
@@ -129,6 +139,7 @@ void FrameProcessor::reset() {
 }
 
 StereoPair FrameProcessor::decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const {
+  checkHeader(frame.left->header, topics_.left_image, warnings);
   StereoPair pair;
   pair.left = decodeImage(*frame.left, topics_.left_image);
   pair.right = decodeImage(*frame.right, topics_.right_image);

@@ -8,7 +8,9 @@ namespace fdp_stereo {
 
 FrameWorker::FrameWorker(Job job) : job_(std::move(job)), thread_([this] { loop(); }) {}
 
-FrameWorker::~FrameWorker() {
+FrameWorker::~FrameWorker() { stop(); }
+
+void FrameWorker::stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stop_ = true;
@@ -16,7 +18,7 @@ FrameWorker::~FrameWorker() {
   }
   cancel_ = true;
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void FrameWorker::submit(StereoFrame frame) {

@@ -33,12 +33,13 @@ class FrameWorker {
   using Job = std::function<void(const StereoFrame& frame, const std::atomic<bool>& cancel)>;
 
   explicit FrameWorker(Job job);
-  /// Cancels the running frame, forgets the waiting one and joins the thread.
   ~FrameWorker();
   FrameWorker(const FrameWorker&) = delete;
   FrameWorker& operator=(const FrameWorker&) = delete;
 
   void submit(StereoFrame frame);
+  /// Cancels the running frame, forgets the waiting one and joins the thread; no frame is worked on afterwards.
+  void stop();
   /// Forgets the waiting frame without counting it.
   void clear();
   /// Frames that were replaced before the worker came to them.

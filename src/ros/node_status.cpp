@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "stamps.hpp"
+
 namespace fdp_stereo {
 namespace {
 
@@ -40,7 +42,7 @@ std::string stampCause(const NodeStatus& status) {
   std::ostringstream text;
   text.precision(4);
   text << "the newest stamps of " << first->topic << " and " << last->topic << " are apart by "
-       << (last->stamp - first->stamp).toSec() * 1e3 << " ms; ";
+       << secondsBetween(first->stamp, last->stamp) * 1e3 << " ms; ";
   if (status.approximate_sync) {
     text << "raise ~queue_size or ~approximate_sync_tolerance, or synchronise the cameras";
   } else {

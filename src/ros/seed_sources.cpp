@@ -109,6 +109,8 @@ void SeedSources::addSource(Request& request, StampedBuffer<Message>& buffer, co
     request.warnings.push_back(error.what());
   } catch (const tf2::TransformException& error) {
     request.warnings.push_back(topic + ": no transform to the left camera: " + error.what());
+  } catch (const std::exception& error) {  // none of this may cost the disparity
+    request.warnings.push_back(topic + ": not used: " + error.what());
   }
 }
 

@@ -18,6 +18,7 @@
 #include <tf2_ros/transform_listener.h>
 
 #include "frame_processor.hpp"
+#include "stamps.hpp"
 
 namespace fdp_stereo {
 
@@ -47,7 +48,7 @@ class StampedBuffer {
     Ptr best;
     double best_age = max_age_s;
     for (const Entry& entry : entries_) {
-      const double age = std::abs((entry.stamp - stamp).toSec());
+      const double age = std::abs(secondsBetween(entry.stamp, stamp));
       if (age > best_age) continue;
       best = entry.message;
       best_age = age;

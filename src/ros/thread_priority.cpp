@@ -10,14 +10,17 @@ namespace fdp_stereo {
 namespace {
 
 /// On Linux a nice level belongs to a thread.
+id_t ownThread() { return static_cast<id_t>(syscall(SYS_gettid)); }
+
 bool setOwnLevel(int level) {
-  const auto thread = static_cast<id_t>(syscall(SYS_gettid));
-  return getpriority(PRIO_PROCESS, thread) == level || setpriority(PRIO_PROCESS, thread, level) == 0;
+  return getpriority(PRIO_PROCESS, ownThread()) == level || setpriority(PRIO_PROCESS, ownThread(), level) == 0;
 }
 
 }  // namespace
 
 bool setNiceLevel(int level) {
+  // The team has the level of the thread that leads it: threads inherit it where they start.
+  if (getpriority(PRIO_PROCESS, ownThread()) == level) return true;
   bool all = true;
 #pragma omp parallel reduction(&& : all)
   all = setOwnLevel(level);

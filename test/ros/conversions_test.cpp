@@ -199,6 +199,25 @@ TEST(StereoGeometry, ParallelCameras) {
   EXPECT_TRUE(c.warnings.empty());
 }
 
+/// Rectified images have P; what describes the raw ones may be anything.
+TEST(StereoGeometry, LooksOnlyAtP) {
+  Calibration c;
+  for (auto* info : {&c.left, &c.right}) {
+    info->D.assign(3, NAN);
+    info->K.fill(0.0);
+    info->R.fill(NAN);
+    info->distortion_model = "unknown";
+  }
+  EXPECT_DOUBLE_EQ(c.geometry().focal_px, 500.0);
+  EXPECT_TRUE(c.warnings.empty());
+}
+
+TEST(QuoteForLog, ShortAndPrintable) {
+  EXPECT_EQ(quoteForLog("mono8"), "'mono8'");
+  EXPECT_EQ(quoteForLog(std::string("a\0\n\x1b\xff", 5) + "b"), "'a????b'");
+  EXPECT_EQ(quoteForLog(std::string(100000, 'x')), "'" + std::string(40, 'x') + "'");
+}
+
 TEST(StereoGeometry, VergedCameras) {
   Calibration c;
   c.right.P[2] = 350.0;
@@ -254,6 +273,11 @@ TEST(StereoGeometry, RefusesWhatGivesNoDepth) {
       {[](Calibration& c) { c.right.binning_x = 2; }, {"right/camera_info", "320 x 480", "binning"}},
       {[](Calibration& c) { c.right.roi.width = 600; }, {"right/camera_info", "600 x 480", "roi"}},
       {[](Calibration& c) { c.right.binning_y = 4000000000U; }, {"right/camera_info", "640 x 0"}},
+      {[](Calibration& c) { c.left.P[0] = 1e300; }, {"left/camera_info", "P[0] = 1e+300", "1e+06"}},
+      {[](Calibration& c) { c.left.P[2] = -1e30; }, {"left/camera_info", "P[2] = -1e+30", "calibrate"}},
+      {[](Calibration& c) { c.right.roi.x_offset = 0xFFFFFFFFU; }, {"right/camera_info", "P[2] = -4.29", "roi"}},
+      {[](Calibration& c) { c.right.P[3] = -1e300; }, {"right/camera_info", "baseline of 2e+297 m", "metres"}},
+      {[](Calibration& c) { c.right.P[3] = -1e-300; }, {"right/camera_info", "baseline of 2e-303 m"}},
   };
   for (const auto& [change, expected] : cases) {
     Calibration c;

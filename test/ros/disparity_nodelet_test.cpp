@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <dynamic_reconfigure/config_tools.h>
 #include <gtest/gtest.h>
@@ -213,6 +217,46 @@ TEST(DisparityNodelet, ABadPresetFallsBackAndSaysSo) {
   NodeletGraph graph("/bad_preset", {{"preset", std::string("fsat")}});
   EXPECT_NE(log.wait({"~preset", "fsat", "using fast"}), "");
   EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, BadParametersOfTheStartAreSaid) {
+  LogLines log;
+  NodeletGraph graph("/bad_start", {{"image_transport", std::string("no_such")},
+                                    {"approximate_sync", true},
+                                    {"approximate_sync_tolerance", 1e300},
+                                    {"queue_size", -5},
+                                    {"watch_period", -1.0},
+                                    {"diagnostic_period", std::string("often")}});
+  EXPECT_NE(log.wait({"~image_transport", "no_such", "using raw"}), "");
+  EXPECT_NE(log.wait({"~approximate_sync_tolerance", "using 0"}), "");
+  EXPECT_NE(log.wait({"~queue_size = -5", "using 1"}), "");
+  EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+/// Nice levels of the threads of this process.
+std::vector<int> niceLevels() {
+  std::vector<int> levels;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    levels.push_back(getpriority(PRIO_PROCESS, static_cast<id_t>(std::stoi(task.path().filename()))));
+  }
+  return levels;
+}
+
+TEST(DisparityNodelet, ThreadsAndNiceLevelOfTheWorkersOnly) {
+  NodeletGraph graph("/nice", {{"threads", 3}, {"nice", 7}});
+  ASSERT_TRUE(graph.process(goodMessages()));
+  const int own = getpriority(PRIO_PROCESS, 0);
+  std::vector<int> levels = niceLevels();
+  EXPECT_EQ(std::count(levels.begin(), levels.end(), 7), 3);
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), own);
+  graph.edit([](auto& config) {
+    ConfigTools::appendParameter(config, "threads", 5);
+    ConfigTools::appendParameter(config, "nice", 9);
+  });
+  ASSERT_TRUE(graph.process(goodMessages()));
+  levels = niceLevels();
+  EXPECT_EQ(std::count(levels.begin(), levels.end(), 7), 0);
+  EXPECT_EQ(std::count(levels.begin(), levels.end(), 9), 5);
 }
 
 TEST(DisparityNodelet, ApproximateSynchronisation) {

@@ -100,6 +100,15 @@ TEST(FrameWorker, EndsWhileAFrameRuns) {
   EXPECT_EQ(frames, 1) << "the waiting frame is forgotten";
 }
 
+TEST(FrameWorker, WorksOnNothingAfterItsStop) {
+  std::atomic<int> jobs{0};
+  FrameWorker worker([&](const StereoFrame&, const std::atomic<bool>&) { ++jobs; });
+  worker.stop();
+  worker.submit(frameNumber(1));
+  worker.stop();
+  EXPECT_EQ(jobs, 0);
+}
+
 TEST(FrameWorker, EndsIdle) {
   for (int i = 0; i < 100; ++i) FrameWorker worker([](const StereoFrame&, const std::atomic<bool>&) {});
 }

@@ -27,7 +27,7 @@
 /// The nodelet inside the test process, and a stereo camera that it listens to: what kills a manager kills the test.
 namespace fdp_stereo::test {
 
-inline bool waitUntil(const std::function<bool()>& condition, double seconds = 20.0) {
+inline bool waitUntil(const std::function<bool()>& condition, double seconds = 60.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
@@ -49,7 +49,7 @@ class Inbox {
   std::uint32_t publishers() const { return subscriber_.getNumPublishers(); }
 
   /// The first message that fits, null after the time.
-  Ptr wait(const std::function<bool(const Message&)>& fits, double seconds = 20.0) {
+  Ptr wait(const std::function<bool(const Message&)>& fits, double seconds = 60.0) {
     Ptr found;
     waitUntil(
         [&] {
@@ -141,7 +141,7 @@ class NodeletGraph {
   Inbox<stereo_msgs::DisparityImage>& disparity() { return *disparity_; }
 
   /// Sends the pair, again and again as a camera does, until its disparity comes; null after the time.
-  stereo_msgs::DisparityImageConstPtr process(Messages messages, double seconds = 20.0) {
+  stereo_msgs::DisparityImageConstPtr process(Messages messages, double seconds = 60.0) {
     const ros::Time first = nextStamp();
     const auto fits = [&](const stereo_msgs::DisparityImage& d) { return d.header.stamp >= first; };
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -190,7 +190,7 @@ class LogLines : public ros::console::LogAppender {
     lines_.clear();
   }
   /// A line with all the parts, "" after the time.
-  std::string wait(const std::vector<std::string>& parts, double seconds = 10.0) {
+  std::string wait(const std::vector<std::string>& parts, double seconds = 60.0) {
     std::string found;
     waitUntil(
         [&] {

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "periodic_task.hpp"
+
+#include <utility>
+
+namespace fdp_stereo {
+
+PeriodicTask::PeriodicTask(std::chrono::duration<double> period, std::function<void()> task)
+    : thread_([this, period, task = std::move(task)] {
+        std::unique_lock<std::mutex> lock(mutex_);
+        while (!ended_.wait_for(lock, period, [this] { return end_; })) {
+          lock.unlock();
+          task();
+          lock.lock();
+        }
+      }) {}
+
+PeriodicTask::~PeriodicTask() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    end_ = true;
+  }
+  ended_.notify_one();
+  thread_.join();
+}
+
+}  // namespace fdp_stereo
