@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A synthetic stereo camera that measures the node it feeds: the time of live edits, and the age of the disparities
-// against the time that the node says it needed.
-// Private parameters: rate (Hz), edits, seconds, preset (for the printout).
+// A synthetic stereo camera that measures the node it feeds: the time of live edits, the age of the disparities against
+// the time that the node says it needed, and the time from a pair to its disparity against the core's alone.
+// Private parameters: rate (Hz), edits, seconds, width, height, preset and range (of the core beside the node),
+// pairs (compared one by one with the core instead), inside (load the nodelet into this process, as a manager does).
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <map>
 #include <mutex>
@@ -15,11 +17,14 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <dynamic_reconfigure/config_tools.h>
+#include <nodelet/loader.h>
 #include <ros/ros.h>
 #include <stereo_msgs/DisparityImage.h>
+#include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "conversions.hpp"
+#include "fdp_stereo/pipeline.hpp"
 
 namespace {
 
@@ -36,24 +41,55 @@ double percentile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
+/// A slanted, textured surface seen by both cameras.
+struct SyntheticPair {
+  explicit SyntheticPair(cv::Size size) : left(size, CV_8UC1) {
+    cv::RNG rng(1);
+    right.create(size, CV_8UC1);
+    rng.fill(right, cv::RNG::UNIFORM, 0, 256);
+    cv::GaussianBlur(right, right, cv::Size(), 1.5);
+    cv::normalize(right, right, 0, 255, cv::NORM_MINMAX);
+    const float slope = 20.0F / static_cast<float>(size.height);
+    cv::Mat from_x(size, CV_32FC1);
+    cv::Mat from_y(size, CV_32FC1);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        from_x.at<float>(y, x) = static_cast<float>(x) - 5.0F - slope * static_cast<float>(y);
+        from_y.at<float>(y, x) = static_cast<float>(y);
+      }
+    }
+    cv::remap(right, left, from_x, from_y, cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  }
+  cv::Mat left;
+  cv::Mat right;
+};
+
 class Probe {
  public:
-  explicit Probe(double rate_hz) : rate_hz_(rate_hz) {
+  Probe(double rate_hz, const SyntheticPair& pair) : rate_hz_(rate_hz) {
     ros::NodeHandle node;
     left_ = node.advertise<sensor_msgs::Image>("left/image_rect", 2);
     right_ = node.advertise<sensor_msgs::Image>("right/image_rect", 2);
     left_info_ = node.advertise<sensor_msgs::CameraInfo>("left/camera_info", 2);
     right_info_ = node.advertise<sensor_msgs::CameraInfo>("right/camera_info", 2);
-    disparity_ = node.subscribe("disparity", 10, &Probe::onDisparity, this);
+    disparity_ = node.subscribe("disparity", 10, &Probe::onDisparity, this, ros::TransportHints().tcpNoDelay());
     diagnostics_ = node.subscribe("/diagnostics", 10, &Probe::onDiagnostics, this);
-    makePair();
+    makeMessages(pair);
   }
 
-  bool connected() const { return left_.getNumSubscribers() > 0 && right_info_.getNumSubscribers() > 0; }
+  bool connected() const {
+    return left_.getNumSubscribers() > 0 && right_.getNumSubscribers() > 0 && left_info_.getNumSubscribers() > 0 &&
+           right_info_.getNumSubscribers() > 0;
+  }
 
-  void publish() {
+  /// Messages of their own for each pair, as a driver makes them: inside one process they are handed over uncopied.
+  ros::Time publish() {
+    const auto left_info = boost::make_shared<sensor_msgs::CameraInfo>(left_camera_);
+    const auto right_info = boost::make_shared<sensor_msgs::CameraInfo>(right_camera_);
+    const auto left = boost::make_shared<sensor_msgs::Image>(left_image_);
+    const auto right = boost::make_shared<sensor_msgs::Image>(right_image_);
     const ros::Time stamp = ros::Time::now();
-    for (auto* header : {&left_image_.header, &right_image_.header, &left_camera_.header, &right_camera_.header}) {
+    for (auto* header : {&left->header, &right->header, &left_info->header, &right_info->header}) {
       header->stamp = stamp;
     }
     {
@@ -61,10 +97,19 @@ class Probe {
       sent_[stamp] = Clock::now();
       if (sent_.size() > 2000) sent_.erase(sent_.begin());
     }
-    left_info_.publish(left_camera_);
-    right_info_.publish(right_camera_);
-    left_.publish(left_image_);
-    right_.publish(right_image_);
+    left_info_.publish(left_info);
+    right_info_.publish(right_info);
+    left_.publish(left);
+    right_.publish(right);
+    return stamp;
+  }
+
+  /// Publishes one pair; ms until its disparity is here, < 0 where none comes.
+  double timeOnePair() {
+    const ros::Time stamp = publish();
+    std::unique_lock<std::mutex> lock(mutex_);
+    const bool came = arrived_.wait_for(lock, std::chrono::seconds(20), [&] { return newest_ == stamp; });
+    return came ? ages_ms_.back() : -1.0;
   }
 
   void report() const {
@@ -80,23 +125,15 @@ class Probe {
   }
 
  private:
-  void makePair() {
-    constexpr int kWidth = 320;
-    constexpr int kHeight = 240;
-    constexpr int kDisparity = 20;
-    cv::Mat texture(kHeight, kWidth + kDisparity, CV_8UC1);
-    cv::RNG rng(1);
-    rng.fill(texture, cv::RNG::UNIFORM, 0, 256);
-    cv::GaussianBlur(texture, texture, cv::Size(), 1.5);
-    cv::normalize(texture, texture, 0, 255, cv::NORM_MINMAX);
+  void makeMessages(const SyntheticPair& pair) {
     std_msgs::Header header;
     header.frame_id = "camera";
-    left_image_ = *fdp_stereo::toImageMessage(texture.colRange(0, kWidth), header);
-    right_image_ = *fdp_stereo::toImageMessage(texture.colRange(kDisparity, kDisparity + kWidth), header);
+    left_image_ = *fdp_stereo::toImageMessage(pair.left, header);
+    right_image_ = *fdp_stereo::toImageMessage(pair.right, header);
     left_camera_.header = header;
-    left_camera_.width = kWidth;
-    left_camera_.height = kHeight;
-    left_camera_.P = {300.0, 0.0, kWidth / 2.0, 0.0, 0.0, 300.0, kHeight / 2.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    left_camera_.width = left_image_.width;
+    left_camera_.height = left_image_.height;
+    left_camera_.P = {300.0, 0.0, pair.left.cols / 2.0, 0.0, 0.0, 300.0, pair.left.rows / 2.0, 0.0, 0.0, 0.0, 1.0, 0.0};
     right_camera_ = left_camera_;
     right_camera_.P[3] = -30.0;
   }
@@ -104,7 +141,10 @@ class Probe {
   void onDisparity(const stereo_msgs::DisparityImageConstPtr& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto sent = sent_.find(message->header.stamp);
-    if (sent != sent_.end()) ages_ms_.push_back(millisecondsSince(sent->second));
+    if (sent == sent_.end()) return;
+    ages_ms_.push_back(millisecondsSince(sent->second));
+    newest_ = message->header.stamp;
+    arrived_.notify_all();
   }
 
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message) {
@@ -124,6 +164,8 @@ class Probe {
   sensor_msgs::Image left_image_, right_image_;
   sensor_msgs::CameraInfo left_camera_, right_camera_;
   mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  ros::Time newest_;
   std::map<ros::Time, Clock::time_point> sent_;
   std::vector<double> ages_ms_, processing_ms_;
 };
@@ -145,33 +187,71 @@ std::vector<double> timeEdits(int count) {
   return times_ms;
 }
 
-}  // namespace
+/// The same pair through the node and through the core, in turns, so that both meet the same machine.
+void compareWithCore(Probe& probe, const SyntheticPair& pair, const std::string& preset, int range, int pairs) {
+  fdp_stereo::PipelineParams params = fdp_stereo::loadPreset(preset);
+  params.search = {0, range};
+  fdp_stereo::Pipeline pipeline(params);
+  constexpr int kWarmUp = 3;
+  std::vector<double> node_ms;
+  std::vector<double> core_ms;
+  for (int i = 0; i < kWarmUp + pairs && ros::ok(); ++i) {
+    const double through_node = probe.timeOnePair();
+    const auto start = Clock::now();
+    pipeline.run(pair.left, pair.right);
+    if (i < kWarmUp || through_node < 0.0) continue;
+    node_ms.push_back(through_node);
+    core_ms.push_back(millisecondsSince(start));
+  }
+  const double node = percentile(node_ms, 0.5);
+  const double core = percentile(core_ms, 0.5);
+  std::printf(
+      "pair to disparity: %zu pairs of %d x %d px, range %d, median %.1f ms; the core alone %.1f ms; ratio %.2f\n",
+      node_ms.size(), pair.left.cols, pair.left.rows, range, node, core, node / core);
+}
 
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "latency_probe");
-  ros::NodeHandle private_node("~");
-  const double rate_hz = std::clamp(private_node.param("rate", 30.0), 0.1, 1000.0);
-  const int edits = private_node.param("edits", 0);
-  std::printf("preset %s, input %.0f Hz\n", private_node.param<std::string>("preset", "?").c_str(), rate_hz);
-  Probe probe(rate_hz);
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  while (ros::ok() && !probe.connected()) ros::WallDuration(0.01).sleep();
-
+/// Feeds the node at its rate meanwhile.
+void measureStream(Probe& probe, double rate_hz, int edits, double seconds) {
   std::atomic<bool> stop{false};
   std::thread camera([&] {
     for (ros::WallRate rate(rate_hz); ros::ok() && !stop; rate.sleep()) probe.publish();
   });
   ros::WallDuration(1.0).sleep();
   const std::vector<double> times_ms = timeEdits(edits);
-  if (edits == 0) ros::WallDuration(private_node.param("seconds", 10.0)).sleep();
+  if (edits == 0) ros::WallDuration(seconds).sleep();
   stop = true;
   camera.join();
-  spinner.stop();
   if (!times_ms.empty()) {
     std::printf("edit: %zu edits, median %.1f ms, slowest %.1f ms\n", times_ms.size(), percentile(times_ms, 0.5),
                 percentile(times_ms, 1.0));
   }
-  probe.report();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "latency_probe");
+  ros::NodeHandle private_node("~");
+  const double rate_hz = std::clamp(private_node.param("rate", 30.0), 0.1, 1000.0);
+  const int pairs = private_node.param("pairs", 0);
+  const bool inside = private_node.param("inside", false);
+  const std::string preset = private_node.param<std::string>("preset", "fast");
+  const SyntheticPair pair(cv::Size(private_node.param("width", 320), private_node.param("height", 240)));
+  std::printf("preset %s, %s%s\n", preset.c_str(), inside ? "in one process" : "over TCP",
+              pairs > 0 ? "" : (", input " + std::to_string(static_cast<int>(rate_hz)) + " Hz").c_str());
+  Probe probe(rate_hz, pair);
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  nodelet::Loader loader(false);
+  if (inside && !loader.load(ros::names::resolve("disparity"), "fdp_stereo/disparity", {}, {})) return 1;
+  while (ros::ok() && !probe.connected()) ros::WallDuration(0.01).sleep();
+
+  if (pairs > 0) {
+    compareWithCore(probe, pair, preset, private_node.param("range", 64), pairs);
+  } else {
+    measureStream(probe, rate_hz, private_node.param("edits", 0), private_node.param("seconds", 10.0));
+    spinner.stop();
+    probe.report();
+  }
   return 0;
 }

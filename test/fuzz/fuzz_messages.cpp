@@ -4,6 +4,7 @@
 // Images, calibrations and seed messages: whatever they hold, an exception that says why, or a result.
 #include <stdexcept>
 
+#include <dynamic_reconfigure/config_tools.h>
 #include <boost/make_shared.hpp>
 
 #include "conversions.hpp"
@@ -14,7 +15,17 @@
 namespace fdp_stereo::fuzz {
 namespace {
 
-constexpr std::size_t kMostBytes = 4096;
+using dynamic_reconfigure::ConfigTools;
+
+constexpr std::size_t kMostBytes = 8192;
+
+void fill(std::vector<std::uint8_t>& data, std::size_t bytes, std::uint8_t seed) {
+  std::uint32_t state = seed + 1U;
+  while (data.size() < bytes) {
+    state = state * 1664525U + 1013904223U;
+    data.push_back(static_cast<std::uint8_t>(state >> 24));
+  }
+}
 
 sensor_msgs::Image takeImage(Input& input) {
   static const char* const kEncodings[] = {"mono8",        "mono16", "bgr8",  "rgba8", "bayer_rggb8",
@@ -26,7 +37,10 @@ sensor_msgs::Image takeImage(Input& input) {
   image.height = input.takeSize();
   image.step = which % 2 == 0 ? image.width * 4 : input.takeSize();
   image.is_bigendian = input.take<std::uint8_t>();
-  image.data = input.takeBytes(std::min<std::size_t>(kMostBytes, std::size_t{image.step} * image.height));
+  const std::size_t bytes = std::min<std::size_t>(kMostBytes, std::size_t{image.step} * image.height);
+  image.data = input.takeBytes(bytes);
+  // A few bytes make a whole texture, so that the stages behind the checks are reached.
+  if (input.take<std::uint8_t>() % 4 != 0) fill(image.data, bytes, input.take<std::uint8_t>());
   return image;
 }
 
@@ -73,6 +87,39 @@ void expectOnlyInvalid(Call&& call) {
   }
 }
 
+/// Sets a few parameters as the input wills.
+void editSettings(Input& input, int count, NodeSettings& settings) {
+  dynamic_reconfigure::Config edits;
+  const auto refs = liveParamList(settings);
+  for (int i = 0; i < count; ++i) {
+    const ParamRef& ref = refs[input.take<std::uint8_t>() % refs.size()];
+    const double share = input.take<std::uint8_t>() / 255.0;
+    ConfigTools::appendParameter(edits, ref.ros_name, ref.min + share * (ref.max - ref.min));
+  }
+  std::vector<std::string> messages;
+  settings = applyConfig(edits, settings, messages);
+}
+
+/// A valid set of parameters.
+NodeSettings takeSettings(Input& input) {
+  static const std::vector<PipelineParams> presets = [] {
+    std::vector<PipelineParams> loaded(12, loadPreset(kDefaultPreset));  // the others take longer: now and then
+    for (const std::string& name : presetNames()) loaded.push_back(loadPreset(name));
+    return loaded;
+  }();
+  NodeSettings settings;
+  const auto which = input.take<std::uint8_t>();
+  settings.pipeline = presets[which / 8 % presets.size()];
+  if (which % 8 < 3) editSettings(input, 1 + which % 8, settings);
+  settings.pipeline.search = {static_cast<int>(input.take<std::int8_t>()), 1 + input.take<std::uint8_t>() % 16};
+  settings.pipeline.threads = 1;
+  settings.pipeline.local_expansion.iterations = std::min(settings.pipeline.local_expansion.iterations, 1);
+  if (settings.pipeline.feature_matching.detector == FeatureDetector::kSift) {  // slow, and not this package's
+    settings.pipeline.feature_matching.detector = FeatureDetector::kFastCensus;
+  }
+  return settings;
+}
+
 void fuzzPair(Input& input) {
   sensor_msgs::Image left = takeImage(input);
   sensor_msgs::Image right = input.take<std::uint8_t>() < 200 ? left : takeImage(input);
@@ -81,10 +128,7 @@ void fuzzPair(Input& input) {
   frame.right_info = boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, left.width, left.height));
   frame.left = boost::make_shared<sensor_msgs::Image>(left);
   frame.right = boost::make_shared<sensor_msgs::Image>(right);
-  NodeSettings settings;
-  settings.pipeline.search = {static_cast<int>(input.take<std::int8_t>()), 1 + input.take<std::uint8_t>() % 16};
-  settings.pipeline.threads = 1;
-  settings.pipeline.feature_matching.detector = FeatureDetector::kFastCensus;
+  const NodeSettings settings = takeSettings(input);
   FrameProcessor processor({});
   expectOnlyInvalid([&] { processor.process(frame, settings, {true, true, true, true}); });
 }
