@@ -297,7 +297,8 @@ TEST_P(HostileStamps, NoStampsAtAll) {
   LogLines log;
   NodeletGraph graph("/unstamped", {{"approximate_sync", GetParam()}, {"max_rate", 10.0}});
   ASSERT_TRUE(graph.camera().waitForSubscribers(4));
-  const Messages messages = goodMessages();
+  Messages messages = goodMessages();
+  messages.stamp(ros::Time());
   for (std::size_t i = 1; i <= 3; ++i) {
     const auto came = [&] {
       graph.camera().publish(messages);

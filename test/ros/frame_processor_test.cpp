@@ -156,6 +156,36 @@ TEST(FrameProcessor, OneGreyAndOneColourCamera) {
   ASSERT_EQ(output.report.warnings.size(), 1U);
 }
 
+TEST(FrameProcessor, SaysWhatTheHeaderLacks) {
+  Messages messages = goodMessages();
+  messages.stamp(ros::Time());
+  for (auto* header : {&messages.left.header, &messages.left_info.header, &messages.right_info.header}) {
+    header->frame_id = "";
+  }
+  const FrameOutput output = run(messages);
+  EXPECT_GT(shareAt(output, kPlaneDisparity), 0.85);
+  ASSERT_EQ(output.report.warnings.size(), 2U);
+  EXPECT_NE(output.report.warnings[0].find("stamp is 0"), std::string::npos);
+  EXPECT_NE(output.report.warnings[1].find("frame_id"), std::string::npos);
+}
+
+/// Sizes at which windows, census codes and pyramids do not fit.
+TEST(FrameProcessor, ImagesOfAnyShapeWithEveryPreset) {
+  const cv::Size sizes[] = {{1, 1}, {2, 1}, {1, 2}, {3, 3}, {7, 5}, {2000, 2}, {2, 2000}, {8000, 2}};
+  for (const std::string& preset : presetNames()) {
+    NodeSettings s;
+    s.pipeline = loadPreset(preset);
+    s.pipeline.search = {0, 16};
+    s.pipeline.local_expansion.iterations = 1;
+    for (const cv::Size size : sizes) {
+      const FrameOutput output = run(goodMessages(size.width, size.height), s);
+      EXPECT_EQ(output.disparity->image.width, static_cast<unsigned>(size.width)) << preset;
+      EXPECT_EQ(output.disparity->image.height, static_cast<unsigned>(size.height)) << preset;
+      EXPECT_GT(output.disparity->valid_window.width, 0U) << preset << size;
+    }
+  }
+}
+
 TEST(FrameProcessor, VergedCameras) {
   Messages messages = goodMessages();
   messages.right_info.P[2] += 20.0;  // published d = 9 + 20

@@ -84,9 +84,11 @@ constexpr double kBaseline = 0.1;
 /// A good pair, 160 x 120 px, of a plane at kFocal * kBaseline / kPlaneDisparity.
 inline Messages goodMessages(int width = 160, int height = 120) {
   const PlanePair pair = planePair(width, height, kPlaneDisparity);
-  return {imageMessage(pair.left, "mono8"), imageMessage(pair.right, "mono8"),
-          cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, 0.0),
-          cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, -kFocal * kBaseline)};
+  Messages messages{imageMessage(pair.left, "mono8"), imageMessage(pair.right, "mono8"),
+                    cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, 0.0),
+                    cameraInfo(width, height, kFocal, width / 2.0, height / 2.0, -kFocal * kBaseline)};
+  messages.stamp(ros::Time(1.0));
+  return messages;
 }
 
 }  // namespace fdp_stereo::test
