@@ -66,7 +66,8 @@ float costStep(const PipelineParams& params, const Optimizer& optimizer) {
 }
 
 void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::Size size, DisparityRange search) {
-  const double cells = static_cast<double>(size.area()) * (search.count + CostVolume::kPadding);
+  const double pixels = static_cast<double>(size.width) * size.height;
+  const double cells = pixels * (search.count + CostVolume::kPadding);
   const double mb = cells * (params.matching_cost.bits / 8.0 + optimizer.bytesPerCost()) / 1e6;
   if (mb <= params.max_memory_mb) return;
   throw std::invalid_argument(
