@@ -74,13 +74,19 @@ def machine():
     return "%s, %d threads" % (model, os.cpu_count())
 
 
+def commit():
+    """The commit that is checked out, and whether the programs were changed since."""
+    git = ["git", "-C", ROOT]
+    name = subprocess.run(git + ["rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    changed = subprocess.run(git + ["diff", "--quiet", "HEAD", "--", "include", "src", "tools", "config"]).returncode != 0
+    return name + (" with local changes" if changed else "")
+
+
 def make_results(data, presets):
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE,
-                            text=True).stdout.strip()
-    lines = ["Share of bad pixels in % at thresholds in px of the image as given, non-occluded pixels, holes filled; Middlebury's",
-             "weights. Time (one run per pair; scripts/benchmark.sh takes medians) and memory above what was in use before. Bold: the "
-             "best of a column. Commit %s, %s."
-             % (commit, machine())]
+    lines = ['Columns "bad t": share in % of the pixels whose disparity is off by more than t px, among the pixels that both cameras see;',
+             "holes are filled, means are weighted as in the Middlebury V3 table. ms: time of one run per pair",
+             "(docs/performance.md has medians); MB: memory of the run. Bold: the best of a column. Measured at commit %s on %s."
+             % (commit(), machine())]
     for folder, heading in SETS:
         if not os.path.isdir(os.path.join(data, folder)):
             continue

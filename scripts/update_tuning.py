@@ -26,43 +26,49 @@ ROW_SHIFT_PX = 2.0  # of the right image in the case "rows": a camera that was k
 # name, symptom, remedy, part of the picture (x, y, width, height), settings before, settings after
 CASES = (
     ("range", "Near things are wrong or missing, far ones are right",
-     "The range ends before them. Raise `search.num_disparities` (disparity_range in ROS): a thing at Z metres has "
-     "f T / Z px. Less range is faster and leaves less to confuse, so end it where your scene does.",
+     "The searched range ends before the disparities of near things. Raise `search.num_disparities` (`disparity_range` in "
+     "ROS): a thing at a distance of Z metres has a disparity of f T / Z px, with the focal length f in px and the baseline T "
+     "in metres. A smaller range is faster and leaves fewer candidates to confuse, so choose it just large enough.",
      WHOLE, {"search.num_disparities": "40"}, {"search.num_disparities": "64"}),
     ("rows", "Noise and holes everywhere, horizontal edges worst, on cameras that were calibrated long ago",
-     "The rows of the views do not meet (here the right image is shifted by 2 px). Switch `row_alignment.enabled` on; "
-     "`match --row-alignment f.png` shows how far they are off, and the node warns above `row_alignment.warn_px`. Calibrate "
-     "anew when it does.",
+     "The same point does not lie on the same row of both images (here the right image is shifted by 2 px). Switch "
+     "`row_alignment.enabled` on. `match --row-alignment FILE` draws how far the rows are off, and the node warns when it is "
+     "more than `row_alignment.warn_px`; then calibrate the cameras again.",
      WHOLE, {"row_alignment.enabled": "false"}, {"row_alignment.enabled": "true"}),
-    ("smoothness", "Weak texture is torn to streaks",
-     "The penalties are too small for the cost. Raise `semi_global.p1` and `semi_global.p2`, p2 to about five times p1.",
+    ("smoothness", "Streaks in places with weak texture",
+     "The penalties for changes of the disparity are too small for the matching cost. Raise `semi_global.p1` and "
+     "`semi_global.p2`, p2 to about five times p1.",
      WHOLE, {"semi_global.p1": "0.05", "semi_global.p2": "0.2"}, {"semi_global.p1": "0.6", "semi_global.p2": "3"}),
-    ("left_right", "To the left of near things hangs a smear of wrong disparities",
-     "Only one camera sees that part. Switch `left_right_check.enabled` on; "
-     "`left_right_check.max_difference_px` says how strict it is.",
+    ("left_right", "Wrong disparities to the left of near things",
+     "Only the left camera sees that part of the background. Switch `left_right_check.enabled` on, which removes such pixels; "
+     "a smaller `left_right_check.max_difference_px` is stricter.",
      WHOLE, {"left_right_check.enabled": "false", "speckle_filter.max_size": "0"},
      {"left_right_check.enabled": "true", "speckle_filter.max_size": "0"}),
-    ("speckles", "Small islands float in space",
-     "Raise `speckle_filter.max_size` (speckle_size in ROS), in pixels of an island. Thin things go with them when it is "
-     "too large.",
+    ("speckles", "Small islands of wrong disparities",
+     "Raise `speckle_filter.max_size` (`speckle_size` in ROS): connected regions with at most that many pixels are removed. "
+     "If it is too large, thin things are removed too.",
      SEAT, {"speckle_filter.max_size": "0"}, {"speckle_filter.max_size": "300"}),
     ("uniqueness", "Too many holes",
-     "Lower `semi_global.uniqueness_ratio` (uniqueness_ratio in ROS), or raise `left_right_check.max_difference_px`. For a "
-     "map for a planner holes are better than guesses; for a picture fill them.",
+     "Lower `semi_global.uniqueness_ratio` (`uniqueness_ratio` in ROS), or raise `left_right_check.max_difference_px`. To "
+     "plan the path of a robot, holes are better than guesses; for a picture, fill them.",
      WHOLE, {"semi_global.uniqueness_ratio": "40"}, {"semi_global.uniqueness_ratio": "0"}),
     ("filling", "Every pixel must have a value",
-     "Switch `hole_filling.enabled` on (`--fill` on the command line). What only one camera sees takes the disparity of the "
-     "background beside it: a guess.",
+     "Switch `hole_filling.enabled` on (`--fill` on the command line). Pixels without disparity then get that of the "
+     "background beside them, which is a guess.",
      WHOLE, {"hole_filling.enabled": "false"}, {"hole_filling.enabled": "true"}),
 )
 
 HEAD = """# Choosing good stereo parameters
 
-Made by `scripts/update_tuning.py` from the sample pair; do not edit by hand. Left of each picture the symptom, right the remedy,
-black is no disparity. All else is preset `fast`. Values on a robot change live in rqt_reconfigure; there a dot becomes `_`,
-and [parameters.md](parameters.md) has every name.
+Every section shows a symptom, the parameter that helps, and the disparity before and after the change; black is no disparity. All
+other parameters are those of the preset `fast`. On a robot, parameters can be changed while the node runs, with
+`rqt_reconfigure`. Their names in ROS have `_` instead of the dot, or are those of stereo_image_proc;
+[parameters.md](parameters.md) lists them all.
 
-Order helps: first calibration and rows, then the range, then the cost, then the penalties, then what is dropped and filled.
+Work in this order: first calibration and rows, then the range, then the matching cost and the penalties, and last what is removed
+and what is filled.
+
+This page is made by `scripts/update_tuning.py` from the sample pair; do not edit it by hand.
 """
 
 

@@ -43,6 +43,22 @@ class CommandsTest(unittest.TestCase):
                     with self.subTest(page=os.path.relpath(page, ROOT), program=program):
                         self.assertTrue(os.access(os.path.join(ROOT, program), os.X_OK))
 
+    def test_topics_and_parameters_of_the_node_are_described(self):
+        with open(os.path.join(ROOT, "docs", "nodes.md")) as file:
+            page = file.read()
+        names = set()
+        for source in ("disparity_nodelet.cpp", "seed_sources.cpp", "params_ros.cpp"):
+            with open(os.path.join(ROOT, "src", "ros", source)) as file:
+                text = file.read()
+            names.update(re.findall(r'(?:advertise|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
+            names.update(re.findall(r'(?:param(?:<[^>]+>)?|period)\("(\w+)"', text))
+            if source == "params_ros.cpp":
+                names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)"}\)?[;,]', text, flags=re.S))
+        self.assertLessEqual({"disparity", "left/camera_info", "seeds/depth", "queue_size", "max_rate", "seeds_wait"}, names)
+        for name in sorted(names):
+            with self.subTest(name=name):
+                self.assertRegex(page, "`~?%s`" % name)
+
     def test_links_lead_somewhere(self):
         for page in PAGES:
             with open(page) as file:
