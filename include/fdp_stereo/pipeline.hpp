@@ -53,9 +53,8 @@ class Pipeline {
  private:
   struct Buffers;
   RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
-  void restoreSize(const Scaling& scaling, const StereoPair& matched, const StereoPair& given,
-                   PipelineResult& result) const;
-  void postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const;
+  void restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given, PipelineResult& result) const;
+  void postProcess(const cv::Mat& left, OptimizerOutput& optimized, PipelineResult& result) const;
 
   PipelineParams params_;
   OptimizerProgress progress_;

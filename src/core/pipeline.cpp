@@ -82,7 +82,6 @@ void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::S
 struct Pipeline::Buffers {
   MatchingCost matching_cost;
   CostVolume volume;
-  OptimizerOutput optimized;
 };
 
 Pipeline::Pipeline(const PipelineParams& params) : buffers_(std::make_unique<Buffers>()) { setParams(params); }
@@ -104,9 +103,10 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const ThreadScope threads(params_.threads);
   PipelineResult result;
   StageClock clock(result.times);
-  const StereoPair given = prepareImages(left, right);
-  const Scaling scaling(given.left.size(), params_.scale);
-  StereoPair pair = scaling.shrink(given);
+  StereoPair pair = prepareImages(left, right);
+  const cv::Mat given_left = pair.left;
+  const Scaling scaling(given_left.size(), params_.scale);
+  pair = scaling.shrink(pair);
   const DisparityRange search = scaling.shrink(params_.search);
   checkMemory(params_, *optimizer_, pair.left.size(), search);
   clock.done("image_preparation");
@@ -135,13 +135,14 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   }
   clock.done("disparity_propagation");
 
-  OptimizerOutput& optimized = buffers_->optimized;
+  OptimizerOutput optimized;  // its maps become those of the result
   optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, progress_}, optimized);
   result.energies = optimized.energies;
   clock.done("optimizer");
 
-  postProcess(pair, optimized, result);
-  if (!scaling.identity()) restoreSize(scaling, pair, given, result);
+  pair = {pair.left, {}, {}, {}};  // the other images are not needed any more
+  postProcess(pair.left, optimized, result);
+  if (!scaling.identity()) restoreSize(scaling, pair.left, given_left, result);
   clock.done("post_processing");
   return result;
 }
@@ -156,25 +157,26 @@ RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair
   return alignment;
 }
 
-void Pipeline::postProcess(const StereoPair& pair, OptimizerOutput& optimized, PipelineResult& result) const {
-  cv::Mat disparity = optimized.disparity_left.clone();
+void Pipeline::postProcess(const cv::Mat& left, OptimizerOutput& optimized, PipelineResult& result) const {
+  cv::Mat& disparity = optimized.disparity_left;
   if (params_.left_right_check.enabled && !optimized.disparity_right.empty()) {
     checkLeftRight(disparity, optimized.disparity_right, params_.left_right_check);
   }
+  optimized.disparity_right.release();
   filterSpeckles(disparity, params_.speckle_filter);
   const cv::Mat holes = ~(disparity == disparity);  // OpenCV finds no NaN by != where it compares vectors
   if (params_.hole_filling.enabled) fillHoles(disparity);
-  filterWeightedMedian(disparity, pair.left, holes, params_.weighted_median);
-  smoothDisparity(disparity, pair.left, params_.disparity_smoothing);
+  filterWeightedMedian(disparity, left, holes, params_.weighted_median);
+  smoothDisparity(disparity, left, params_.disparity_smoothing);
   result.disparity = disparity;
-  result.confidence = optimized.confidence.clone();
+  result.confidence = optimized.confidence;
   result.confidence.setTo(0.0F, ~(disparity == disparity));
 }
 
-void Pipeline::restoreSize(const Scaling& scaling, const StereoPair& matched, const StereoPair& given,
+void Pipeline::restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given,
                            PipelineResult& result) const {
-  result.disparity = scaling.grow(result.disparity, matched.left, given.left, params_.search);
-  cv::resize(result.confidence, result.confidence, given.left.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  result.disparity = scaling.grow(result.disparity, matched, given, params_.search);
+  cv::resize(result.confidence, result.confidence, given.size(), 0.0, 0.0, cv::INTER_LINEAR);
   result.confidence.setTo(0.0F, ~(result.disparity == result.disparity));
   result.matches = scaling.grow(std::move(result.matches));
   result.seeds = scaling.grow(std::move(result.seeds));

@@ -34,9 +34,9 @@ class PaddedSource {
   PaddedSource(const cv::Mat& disparity, const cv::Mat& left, int radius) : radius_(radius) {
     const int beyond = radius + kMedianLanes;
     cv::copyMakeBorder(disparity, disparity_, radius, radius, radius, beyond, cv::BORDER_CONSTANT, kInvalidDisparity);
-    std::vector<cv::Mat> planes;
-    cv::split(left, planes);
-    for (const cv::Mat& plane : planes) {
+    cv::Mat plane;
+    for (int c = 0; c < left.channels(); ++c) {
+      cv::extractChannel(left, plane, c);
       planes_.emplace_back();
       cv::copyMakeBorder(plane, planes_.back(), radius, radius, radius, beyond, cv::BORDER_REPLICATE);
     }
