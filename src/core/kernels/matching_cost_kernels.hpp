@@ -28,7 +28,7 @@ struct MatchingCostKernels {
   /// Birchfield-Tomasi: left and right hold three planes (value, smallest and largest within half a pixel).
   void (*birchfieldTomasi)(const std::int16_t* left, const std::int16_t* right, int plane_stride, int count,
                            std::uint16_t limit, std::uint16_t* sums);
-  /// sums[i] (+)= weight * popcount(left ^ right[i]).
+  /// sums[i] (+)= weight * popcount(left ^ right[i]); up to the next multiple of 16 entries are read and written, too.
   void (*hamming)(std::uint64_t left, const std::uint64_t* right, int count, std::uint16_t weight, bool first,
                   std::uint16_t* sums);
   /// costs[i] = (theta_a(a[i]) + theta_b(b[i]) + half) >> shift, for `count` rounded up to a multiple of 16 entries.

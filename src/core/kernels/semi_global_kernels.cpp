@@ -149,46 +149,51 @@ void sweepRow(const SweepRow<T>& row, int paths, bool add) {
   }
 }
 
-/// 16 values, 65535 where the index is not below `count`.
-inline Full<std::uint16_t> loadMasked(const std::uint16_t* values, const Full<std::uint16_t>& index, int count) {
-  return index < static_cast<std::uint16_t>(count) ? Lanes<std::uint16_t, 16>::load(values) : ~Full<std::uint16_t>{};
+// Sums less 2^15: SSE2 compares and finds minima of 16 bits with sign only.
+using Signed = Full<std::int16_t>;
+constexpr std::int16_t kNoSum = 32767;
+
+/// 16 sums, kNoSum where the index is not below `count`.
+inline Signed loadSums(const std::uint16_t* sums, const Signed& index, int count) {
+  const Full<std::uint16_t> values = Lanes<std::uint16_t, 16>::load(sums) ^ static_cast<std::uint16_t>(1U << 15);
+  return index < static_cast<std::int16_t>(count) ? reinterpret_cast<Signed>(values) : Signed{} + kNoSum;
 }
+
+inline std::uint16_t unsignedSum(std::int16_t sum) { return static_cast<std::uint16_t>(sum + (1 << 15)); }
 
 /// Winners of four pixels, so that the lanes of all of them are reduced together.
 void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&winners)[4]) {
-  using Vector = Full<std::uint16_t>;
-  const Vector first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  Vector best[4], best_index[4];
-  Half<std::uint16_t> half[4];
-  std::uint16_t smallest[4], winner[4], second[4];
+  const Signed first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Signed none = Signed{} + kNoSum;
+  Signed best[4], best_index[4];
+  Half<std::int16_t> half[4];
+  std::int16_t smallest[4], winner[4], second[4];
   for (int k = 0; k < 4; ++k) {
-    best[k] = best_index[k] = ~Vector{};
-    Vector index = first;
+    best[k] = best_index[k] = none;
+    Signed index = first;
     for (int i = 0; i < count; i += 16, index += 16) {
-      const Vector values = loadMasked(sums[k] + i, index, count);
+      const Signed values = loadSums(sums[k] + i, index, count);
       best_index[k] = values < best[k] ? index : best_index[k];
       best[k] = smallerOf(values, best[k]);
     }
-    half[k] = smallerHalf<std::uint16_t>(best[k]);
+    half[k] = smallerHalf<std::int16_t>(best[k]);
   }
-  smallestLanes<std::uint16_t>(half, smallest);
+  smallestLanes<std::int16_t>(half, smallest);
+  for (int k = 0; k < 4; ++k) half[k] = smallerHalf<std::int16_t>(best[k] == smallest[k] ? best_index[k] : none);
+  smallestLanes<std::int16_t>(half, winner);
   for (int k = 0; k < 4; ++k) {
-    half[k] = smallerHalf<std::uint16_t>(best[k] == smallest[k] ? best_index[k] : ~Vector{});
-  }
-  smallestLanes<std::uint16_t>(half, winner);
-  for (int k = 0; k < 4; ++k) {
-    Vector others = ~Vector{};
-    Vector index = first;
+    Signed others = none;
+    Signed index = first - winner[k];
     for (int i = 0; i < count; i += 16, index += 16) {
-      const Vector values = loadMasked(sums[k] + i, index, count);
-      // Modulo 2^16: 0, 1 and 2 for the winner and its neighbours.
-      const Vector distance = index - winner[k] + static_cast<std::uint16_t>(1);
-      others = smallerOf(others, distance < static_cast<std::uint16_t>(3) ? ~Vector{} : values);
+      const Signed values = loadSums(sums[k] + i, index, count - winner[k]);
+      others = smallerOf(others, (index == -1) | (index == 0) | (index == 1) ? none : values);
     }
-    half[k] = smallerHalf<std::uint16_t>(others);
+    half[k] = smallerHalf<std::int16_t>(others);
   }
-  smallestLanes<std::uint16_t>(half, second);
-  for (int k = 0; k < 4; ++k) winners[k] = {smallest[k], winner[k], second[k]};
+  smallestLanes<std::int16_t>(half, second);
+  for (int k = 0; k < 4; ++k) {
+    winners[k] = {unsignedSum(smallest[k]), static_cast<std::uint16_t>(winner[k]), unsignedSum(second[k])};
+  }
 }
 
 void findWinners(const std::uint16_t* sums, int stride, int count, int width, Winner* winners) {
