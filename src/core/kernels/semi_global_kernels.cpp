@@ -6,8 +6,13 @@ namespace fdp_stereo {
 namespace FDP_STEREO_ISA {
 namespace {
 
-// Vector types of the compiler, of a fixed width on every instruction set: the disparities of a pixel are a multiple of
-// 16, so that no scalar remainder is left.
+// Vector types of the compiler, as wide as the registers: it would take wider ones apart lane by lane. The disparities
+// of a pixel are a multiple of 16, so that no scalar remainder is left.
+#ifdef __AVX2__
+constexpr int kVectorBytes = 32;
+#else
+constexpr int kVectorBytes = 16;
+#endif
 typedef std::uint64_t U64x2 __attribute__((vector_size(16)));
 typedef std::uint32_t U32x4 __attribute__((vector_size(16)));
 
@@ -32,12 +37,14 @@ inline Vector smallerOf(const Vector& a, const Vector& b) {
 template <typename T>
 using Half = typename Lanes<T, 16 / sizeof(T)>::Vector;
 template <typename T>
-using Full = typename Lanes<T, 32 / sizeof(T)>::Vector;
+using Full = typename Lanes<T, kVectorBytes / sizeof(T)>::Vector;
 
 template <typename T>
 inline Half<T> smallerHalf(const Full<T>& v) {
   Half<T> halves[2];
-  __builtin_memcpy(halves, &v, sizeof(v));
+  __builtin_memcpy(&halves[0], &v, sizeof(halves[0]));
+  if (kVectorBytes == 16) return halves[0];
+  __builtin_memcpy(&halves[1], reinterpret_cast<const char*>(&v) + kVectorBytes - 16, sizeof(halves[1]));
   return smallerOf(halves[0], halves[1]);
 }
 
@@ -105,14 +112,14 @@ inline void stepLanes(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, 
 template <typename T, int kPaths, bool kAdd>
 inline void stepPixel(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, int count, std::uint16_t* sums,
                       T (&smallest)[4]) {
-  constexpr int kWide = 32 / sizeof(T);
+  constexpr int kWide = kVectorBytes / sizeof(T);
   Full<T> wide[4];
   for (auto& v : wide) v = ~Full<T>{};
   int i = 0;
   for (; i + kWide <= count; i += kWide) stepLanes<T, kWide, kPaths, kAdd>(paths, costs, p1, i, wide, sums);
   Half<T> half[4];
   for (int k = 0; k < 4; ++k) half[k] = smallerHalf<T>(wide[k]);
-  if (i < count) stepLanes<T, kWide / 2, kPaths, kAdd>(paths, costs, p1, i, half, sums);
+  if (i < count) stepLanes<T, 16 / sizeof(T), kPaths, kAdd>(paths, costs, p1, i, half, sums);
   smallestLanes<T>(half, smallest);
 }
 
@@ -152,10 +159,11 @@ void sweepRow(const SweepRow<T>& row, int paths, bool add) {
 // Sums less 2^15: SSE2 compares and finds minima of 16 bits with sign only.
 using Signed = Full<std::int16_t>;
 constexpr std::int16_t kNoSum = 32767;
+constexpr int kSumLanes = kVectorBytes / 2;
 
-/// 16 sums, kNoSum where the index is not below `count`.
+/// kSumLanes sums, kNoSum where the index is not below `count`.
 inline Signed loadSums(const std::uint16_t* sums, const Signed& index, int count) {
-  const Full<std::uint16_t> values = Lanes<std::uint16_t, 16>::load(sums) ^ static_cast<std::uint16_t>(1U << 15);
+  const Full<std::uint16_t> values = Lanes<std::uint16_t, kSumLanes>::load(sums) ^ static_cast<std::uint16_t>(1U << 15);
   return index < static_cast<std::int16_t>(count) ? reinterpret_cast<Signed>(values) : Signed{} + kNoSum;
 }
 
@@ -163,7 +171,8 @@ inline std::uint16_t unsignedSum(std::int16_t sum) { return static_cast<std::uin
 
 /// Winners of four pixels, so that the lanes of all of them are reduced together.
 void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&winners)[4]) {
-  const Signed first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  Signed first;
+  for (int i = 0; i < kSumLanes; ++i) first[i] = static_cast<std::int16_t>(i);
   const Signed none = Signed{} + kNoSum;
   Signed best[4], best_index[4];
   Half<std::int16_t> half[4];
@@ -171,7 +180,7 @@ void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&
   for (int k = 0; k < 4; ++k) {
     best[k] = best_index[k] = none;
     Signed index = first;
-    for (int i = 0; i < count; i += 16, index += 16) {
+    for (int i = 0; i < count; i += kSumLanes, index += kSumLanes) {
       const Signed values = loadSums(sums[k] + i, index, count);
       best_index[k] = values < best[k] ? index : best_index[k];
       best[k] = smallerOf(values, best[k]);
@@ -184,7 +193,7 @@ void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&
   for (int k = 0; k < 4; ++k) {
     Signed others = none;
     Signed index = first - winner[k];
-    for (int i = 0; i < count; i += 16, index += 16) {
+    for (int i = 0; i < count; i += kSumLanes, index += kSumLanes) {
       const Signed values = loadSums(sums[k] + i, index, count - winner[k]);
       others = smallerOf(others, (index == -1) | (index == 0) | (index == 1) ? none : values);
     }
