@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# latency.sh: how long a live edit takes while the preset accurate runs, and how old a disparity is at 30 and 200 Hz of
-# input while fast runs.
+# latency.sh [PAIRS]: how long a live edit takes while the preset accurate runs; how old a disparity is at 30 and 200 Hz of
+# input while fast runs; and how long a VGA pair takes from its messages to its disparity, beside the core alone on the
+# same pair (median of 40 pairs in turns), with the nodelet in the camera's process and as a node of its own.
 set -euo pipefail
 # shellcheck source=scripts/environment.sh
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
@@ -15,8 +16,12 @@ set +u # catkin's file reads variables that may be unset
 . build/devel/setup.bash
 set -u
 export ROS_HOME="$FDP_STEREO_ROOT/build/ros_home"
-for setting in "accurate 10 100" "fast 30 0" "fast 200 0"; do
-  read -r preset rate edits <<<"$setting"
-  roslaunch -p 11413 fdp_stereo latency.launch preset:="$preset" rate:="$rate" edits:="$edits" </dev/null 2>&1 |
-    grep -E '^(edit|output|preset)' || true
+measure() {
+  roslaunch -p 11413 fdp_stereo latency.launch "$@" </dev/null 2>&1 | grep -E '^(edit|output|pair|preset)' || true
+}
+measure preset:=accurate rate:=10 edits:=100 width:=160 height:=120
+measure preset:=fast rate:=30
+measure preset:=fast rate:=200
+for inside in true false; do
+  measure preset:=fast width:=640 height:=480 range:=96 pairs:="${1:-40}" inside:=$inside
 done

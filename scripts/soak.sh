@@ -16,5 +16,8 @@ set +u # catkin's file reads variables that may be unset
 . build/devel/setup.bash
 set -u
 export ROS_HOME="$FDP_STEREO_ROOT/build/ros_home"
+log="$FDP_STEREO_ROOT/build/soak.log"
 FDP_STEREO_SOAK_FRAMES="${1:-10000}" FDP_STEREO_FILTER='LifeCycle.SoakDoesNotGrow' \
-  rostest --text test/ros/life_cycle.test </dev/null | grep -E 'frames, RSS|PASSED|FAILED|Failure'
+  rostest --text test/ros/life_cycle.test </dev/null >"$log" 2>&1 || true
+grep -E 'frames, RSS|Failure' "$log" || true
+grep -qF '[  PASSED  ] 1 test' "$log" || { echo "soak.sh: failed, see $log" >&2; exit 1; }
