@@ -37,6 +37,7 @@ class Doctor {
     }
     const ros::Subscriber* inputs[] = {&left_, &left_info_, &right_, &right_info_};
     for (std::size_t i = 0; i < seen_.inputs.size(); ++i) seen_.inputs[i].publishers = inputs[i]->getNumPublishers();
+    seen_.disparity_publishers = disparity_.getNumPublishers();
     seen_.seconds = seconds;
     seen_.node = node_.resolveName(node);
     ros::param::get(seen_.node + "/min_disparity", seen_.range.min);

@@ -207,7 +207,11 @@ void checkCentre(const Projection& camera, const std::string& topic) {
        kMaxCentrePx, " px; correct them, or calibrate the camera anew");
 }
 
-void checkBaseline(const Projection& right, const StereoTopics& topics) {
+void checkBaseline(const Projection& left, const Projection& right, const StereoTopics& topics) {
+  if (right.tx == 0.0 && left.tx < 0.0) {
+    fail(topics.left_info, ": P[3] = ", left.tx, " and ", topics.right_info,
+         ": P[3] = 0: left and right are swapped; exchange the topics or cameras");
+  }
   if (right.tx == 0.0) {
     fail(topics.right_info, ": P[3] = 0, so the baseline is 0: this is the calibration of a single or of the left ",
          "camera; run a stereo calibration");
@@ -278,7 +282,7 @@ StereoGeometry stereoGeometry(const sensor_msgs::CameraInfo& left, const sensor_
   const Projection r = project(right);
   checkCentre(l, topics.left_info);
   checkCentre(r, topics.right_info);
-  checkBaseline(r, topics);
+  checkBaseline(l, r, topics);
   checkPair(l, r, topics, warnings);
   if (left.header.frame_id != right.header.frame_id) {
     warnings.push_back(text(topics.right_info, ": frame_id ", quoteForLog(right.header.frame_id),

@@ -45,8 +45,10 @@ bool checkTopics(const Observation& seen, Findings& findings) {
       findings.push_back({Verdict::kWrong, input.topic + " has no publisher",
                           "find the right name with: rostopic list; then remap it, or start the driver or image_proc"});
     } else {
-      findings.push_back({Verdict::kWrong, input.topic + " has a publisher that sent nothing",
-                          "check the camera: rostopic hz " + input.topic});
+      findings.push_back(
+          {Verdict::kWrong, input.topic + " has a publisher that sent nothing",
+           "the node that publishes it gets no images or camera_info itself; see which it is: rostopic info " +
+               input.topic});
     }
   }
   return all;
@@ -92,7 +94,9 @@ std::optional<StereoPair> checkPair(const Observation& seen, Findings& findings)
                         ""});
     return prepareImages(left, right);
   } catch (const std::invalid_argument& error) {
-    findings.push_back({Verdict::kWrong, error.what(), "see the message; the node says the same"});
+    const std::string told = error.what();  // begins with the topic
+    findings.push_back(
+        {Verdict::kWrong, told, "look: rostopic echo -n 1 --noarr " + told.substr(0, told.find_first_of(": "))});
     return std::nullopt;
   }
 }
@@ -154,23 +158,34 @@ void checkScene(const StereoPair& pair, const Observation& seen, Findings& findi
   checkRange(matches, seen, findings);
 }
 
+void checkOutput(const Observation& seen, Findings& findings) {
+  const bool faulty =
+      std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.verdict == Verdict::kWrong; });
+  if (seen.disparities > 0) {
+    findings.push_back(
+        {Verdict::kGood, text("disparity: ", static_cast<double>(seen.disparities) / seen.seconds, " Hz"), ""});
+  } else if (seen.disparity_publishers == 0) {
+    findings.push_back({Verdict::kWrong, seen.node + " does not run: nobody publishes disparity",
+                        "start it: roslaunch fdp_stereo stereo.launch"});
+  } else if (faulty) {
+    findings.push_back({Verdict::kWrong, "no disparity came from " + seen.node, "cure what is WRONG above first"});
+  } else {
+    findings.push_back({Verdict::kWrong, "no disparity came from " + seen.node,
+                        "read its log, and what it says of itself: rostopic echo /diagnostics"});
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> diagnose(const Observation& observation) {
   Findings findings;
-  if (!checkTopics(observation, findings)) return findings;
-  checkStamps(observation, findings);
-  if (observation.pair) {
-    if (const auto pair = checkPair(observation, findings)) checkScene(*pair, observation, findings);
+  if (checkTopics(observation, findings)) {
+    checkStamps(observation, findings);
+    if (observation.pair) {
+      if (const auto pair = checkPair(observation, findings)) checkScene(*pair, observation, findings);
+    }
   }
-  if (observation.disparities > 0) {
-    findings.push_back({Verdict::kGood,
-                        text("disparity: ", static_cast<double>(observation.disparities) / observation.seconds, " Hz"),
-                        ""});
-  } else {
-    findings.push_back({Verdict::kWrong, "no disparity came from " + observation.node,
-                        "start it: roslaunch fdp_stereo stereo.launch; read its log and rostopic echo /diagnostics"});
-  }
+  checkOutput(observation, findings);
   return findings;
 }
 

@@ -28,9 +28,10 @@ struct Observation {
   double seconds = 0.0;
   std::array<TopicObservation, 4> inputs;  ///< left image, left info, right image, right info
   std::optional<StereoFrame> pair;         ///< images and infos nearest to each other in time
-  std::size_t disparities = 0;             ///< messages from the node
-  std::string node;                        ///< its resolved name, for what to type
-  DisparityRange range;                    ///< that it searches
+  std::uint32_t disparity_publishers = 0;
+  std::size_t disparities = 0;  ///< messages from the node
+  std::string node;             ///< its resolved name, for what to type
+  DisparityRange range;         ///< that it searches
 };
 
 enum class Verdict { kGood, kOdd, kWrong };

@@ -140,6 +140,7 @@ std::vector<Case> calibrationCases() {
       {"fx negative", [](Messages& m) { m.right_info.P[0] = -200.0; }, {kRightInfo, "P[0] = -200"}},
       {"no baseline", [](Messages& m) { m.right_info.P[3] = 0.0; }, {kRightInfo, "P[3] = 0", "baseline"}},
       {"left and right swapped", [](Messages& m) { m.right_info.P[3] = 20.0; }, {kRightInfo, "P[3] = 20", "swapped"}},
+      {"both calibrations swapped", [](Messages& m) { std::swap(m.left_info, m.right_info); }, {kLeftInfo, "swapped"}},
       {"fx differs by 5 %", [](Messages& m) { m.left_info.P[0] = 210.0; }, {kLeftInfo, "fx = 210", "1 %"}},
       {"cy differs by 10 px", [](Messages& m) { m.left_info.P[6] += 10.0; }, {kLeftInfo, "cy = 70", "rows"}},
       {"left of another size",

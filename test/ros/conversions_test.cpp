@@ -267,6 +267,7 @@ TEST(StereoGeometry, RefusesWhatGivesNoDepth) {
       {[](Calibration& c) { c.left.P[5] = -500.0; }, {"left/camera_info", "P[5] = -500"}},
       {[](Calibration& c) { c.right.P[3] = 0.0; }, {"right/camera_info", "P[3] = 0", "baseline"}},
       {[](Calibration& c) { c.right.P[3] = 60.0; }, {"right/camera_info", "P[3] = 60", "swapped"}},
+      {[](Calibration& c) { std::swap(c.left, c.right); }, {"left/camera_info", "P[3] = -60", "P[3] = 0", "swapped"}},
       {[](Calibration& c) { c.left.P[0] = 510.0; }, {"fx = 510", "fx = 500", "1 %"}},
       {[](Calibration& c) { c.left.P[6] = 250.0; }, {"cy = 250", "rows"}},
       {[](Calibration& c) { c.left.width = 320; }, {"left/camera_info", "320 x 480", "640 x 480"}},

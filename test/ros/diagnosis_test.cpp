@@ -23,6 +23,7 @@ Observation healthy() {
     for (int k = 0; k < 20; ++k) seen.inputs[i].stamps.emplace_back(100.0 + 0.1 * k);
   }
   seen.pair = test::goodMessages(320, 240).frame();
+  seen.disparity_publishers = 1;
   seen.disparities = 20;
   seen.node = "/cam/disparity";
   seen.range = {0, 64};
@@ -52,7 +53,8 @@ TEST(Diagnose, AHealthyCamera) {
 TEST(Diagnose, MissingTopics) {
   Observation seen = healthy();
   seen.inputs[2].stamps.clear();
-  expectContains(first(seen, Verdict::kWrong), {"/cam/right/image_rect has a publisher", "rostopic hz"});
+  expectContains(first(seen, Verdict::kWrong),
+                 {"/cam/right/image_rect has a publisher", "rostopic info /cam/right/image_rect"});
   seen.inputs[2].publishers = 0;
   expectContains(first(seen, Verdict::kWrong), {"/cam/right/image_rect has no publisher", "rostopic list"});
 }
@@ -68,7 +70,8 @@ TEST(Diagnose, CalibrationThatCannotBeUsedOrIsOdd) {
   auto messages = test::goodMessages(320, 240);
   messages.right_info.P[3] = 0.0;
   seen.pair = messages.frame();
-  expectContains(first(seen, Verdict::kWrong), {"/cam/right/camera_info", "baseline is 0"});
+  expectContains(first(seen, Verdict::kWrong),
+                 {"/cam/right/camera_info", "baseline is 0", "rostopic echo -n 1 --noarr /cam/right/camera_info"});
   messages = test::goodMessages(320, 240);
   messages.right_info.header.frame_id = "other";
   seen.pair = messages.frame();
@@ -100,7 +103,18 @@ TEST(Diagnose, NoTextureAndNoOutput) {
   seen.pair = messages.frame();
   seen.disparities = 0;
   expectContains(first(seen, Verdict::kOdd), {"only 0 matches", "texture"});
-  expectContains(first(seen, Verdict::kWrong), {"no disparity came from /cam/disparity", "roslaunch"});
+  expectContains(first(seen, Verdict::kWrong), {"no disparity came from /cam/disparity", "/diagnostics"});
+}
+
+/// The last finding is about the node, whatever is wrong before it.
+TEST(Diagnose, TheNodeItself) {
+  Observation seen = healthy();
+  seen.disparities = 0;
+  seen.inputs[0].stamps.clear();
+  expectContains(diagnose(seen).back().remedy, {"WRONG above first"});
+  seen.disparity_publishers = 0;
+  expectContains(diagnose(seen).back().text, {"/cam/disparity does not run"});
+  expectContains(diagnose(seen).back().remedy, {"roslaunch fdp_stereo stereo.launch"});
 }
 
 }  // namespace
