@@ -24,7 +24,7 @@ SETS = (("MiddEval3-trainingQ", "Middlebury V3, 8 scenes at quarter size"),
         ("KITTI2012", "KITTI 2012, 8 scenes"))
 NAMES = {"sgbm_hh": "OpenCV StereoSGBM, MODE_HH", "sgbm_3way": "OpenCV StereoSGBM, MODE_SGBM_3WAY", "bm": "OpenCV StereoBM"}
 COLUMNS = (("bad_0.125", "bad .125"), ("bad_0.5", "bad .5"), ("bad_1", "bad 1"), ("bad_2", "bad 2"),
-           ("average_px", "avg px"), ("time_ms", "ms"), ("memory_mb", "MB"))
+           ("average_px", "avg px"), ("time_ms", "ms"), ("cpu_ms", "CPU ms"), ("memory_mb", "MB"))
 HALF = {"PianoL", "Playroom", "Playtable", "Shelves", "Vintage"}
 
 
@@ -62,7 +62,7 @@ def table_of(command, heading):
     for method, mean in means.items():
         cells = []
         for name, _ in COLUMNS:
-            text = "%.0f" % mean[name] if name in ("time_ms", "memory_mb") else "%.2f" % mean[name]
+            text = "%.0f" % mean[name] if name in ("time_ms", "cpu_ms", "memory_mb") else "%.2f" % mean[name]
             cells.append("**%s**" % text if mean[name] == best[name] else text)
         lines.append("| %s | %s |" % (NAMES.get(method, "`%s`" % method), " | ".join(cells)))
     return lines
@@ -84,8 +84,8 @@ def commit():
 
 def make_results(data, presets):
     lines = ['Columns "bad t": share in % of the pixels whose disparity is off by more than t px, among the pixels that both cameras see;',
-             "holes are filled, means are weighted as in the Middlebury V3 table. ms: time of one run per pair",
-             "(docs/performance.md has medians); MB: memory of the run. Bold: the best of a column. Measured at commit %s on %s."
+             "holes are filled, means are weighted as in the Middlebury V3 table. ms, CPU ms: wall and CPU time of one run per",
+             "pair (docs/performance.md has medians); MB: memory of the run. Bold: the best of a column. Measured at commit %s on %s."
              % (commit(), machine())]
     for folder, heading in SETS:
         if not os.path.isdir(os.path.join(data, folder)):
