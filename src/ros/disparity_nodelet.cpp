@@ -341,7 +341,9 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
   const std::shared_ptr<const NodeSettings> settings = reconfigure_->settings();
   try {
     if (tooOld(frame, *settings)) return;
-    if (!setNiceLevel(settings->node.nice)) warn("nice cannot be lowered without privileges; restart the node");
+    if (!setNiceLevel(settings->node.nice, settings->pipeline.threads)) {
+      warn("nice cannot be lowered without privileges; restart the node");
+    }
     if (forget_.exchange(false)) processor_->reset();
     FrameOutput output = processor_->process(frame, *settings, wanted(), &cancel);
     if (cancel) return;

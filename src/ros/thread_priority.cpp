@@ -6,6 +6,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <omp.h>
+
 namespace fdp_stereo {
 namespace {
 
@@ -18,11 +20,11 @@ bool setOwnLevel(int level) {
 
 }  // namespace
 
-bool setNiceLevel(int level) {
+bool setNiceLevel(int level, int threads) {
   // The team has the level of the thread that leads it: threads inherit it where they start.
   if (getpriority(PRIO_PROCESS, ownThread()) == level) return true;
   bool all = true;
-#pragma omp parallel reduction(&& : all)
+#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) reduction(&& : all)
   all = setOwnLevel(level);
   return all;
 }

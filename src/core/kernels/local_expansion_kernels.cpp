@@ -360,11 +360,16 @@ void moveTerms(const MoveTask& task) {
   }
 }
 
-typedef float Entries __attribute__((vector_size(kMoveLanes * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef float Entries __attribute__((vector_size(kMoveLanes * sizeof(float))));
 typedef std::int32_t Flags __attribute__((vector_size(kMoveLanes * sizeof(std::int32_t))));
 
-inline Entries& entries(float* p) { return *reinterpret_cast<Entries*>(p); }
-inline const Entries& entries(const float* p) { return *reinterpret_cast<const Entries*>(p); }
+// Copies, which compile to moves that need no alignment: through a reference clang takes the vector as aligned.
+inline Entries entries(const float* p) {
+  Entries values;
+  std::memcpy(&values, p, sizeof(values));
+  return values;
+}
+inline void setEntries(float* p, const Entries& values) { std::memcpy(p, &values, sizeof(values)); }
 
 // The edges of a MoveTask, held apart so that loops need not read the pointers anew.
 struct Edges {
@@ -394,7 +399,7 @@ bool improveRow(const MoveTask& task, const Edges& edges, int y, float* x) {
     const Entries gain = entries(task.total + p) - 2.0F * edges.to(x, p);
     const Entries value = gain < 0.0F ? entries(task.inner + p) : Entries{};
     changed |= value != entries(x + p);
-    entries(x + p) = value;
+    setEntries(x + p, value);
   }
   int any = 0;
   for (int k = 0; k < kMoveLanes; ++k) any |= changed[k];
