@@ -59,6 +59,19 @@ std::unique_ptr<Optimizer> makeOptimizer(const PipelineParams& params) {
   throw std::invalid_argument("optimizer.type " + std::to_string(static_cast<int>(params.optimizer)) + ": unknown");
 }
 
+/// Are the parameters of the optimizer and its choice the same?
+bool sameOptimizer(PipelineParams a, PipelineParams b) {
+  const std::vector<ParamRef> first = paramList(a);
+  const std::vector<ParamRef> second = paramList(b);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::string stage = first[i].key.substr(0, first[i].key.find('.'));
+    const bool counts =
+        stage == "optimizer" || stage == "winner_takes_all" || stage == "semi_global" || stage == "local_expansion";
+    if (counts && toString(first[i]) != toString(second[i])) return false;
+  }
+  return true;
+}
+
 /// The finest cost step with which a path cost of the optimiser still fits the bits of the volume.
 float costStep(const PipelineParams& params, const Optimizer& optimizer) {
   const double steps = params.matching_cost.bits == 8 ? 252.0 : 8188.0;
@@ -89,7 +102,8 @@ Pipeline::~Pipeline() = default;
 
 void Pipeline::setParams(const PipelineParams& params) {
   validate(params);
-  optimizer_ = makeOptimizer(params);
+  // An optimizer that stays keeps what it has learnt from earlier frames.
+  if (!optimizer_ || !sameOptimizer(params_, params)) optimizer_ = makeOptimizer(params);
   params_ = params;
 }
 

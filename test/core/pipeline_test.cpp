@@ -21,9 +21,12 @@ const reference::RenderedPair& rendered() {
   return pair;
 }
 
+/// A preset for the rendered pair. Local expansion takes seconds even there and has tests of its own: what is tested
+/// here are the stages around the optimiser, so semi-global matching stands in for it.
 PipelineParams paramsOf(const std::string& preset) {
   PipelineParams params = loadPreset(preset);
   params.search = {0, 32};
+  params.optimizer = OptimizerType::kSemiGlobal;
   return params;
 }
 
@@ -178,6 +181,39 @@ TEST(Pipeline, ExternalSeedsBecomeSeeds) {
     if (seed.source == SeedSource::kFile) ++found;
   }
   EXPECT_EQ(found, 1) << "one is beyond the range, one outside the image";
+}
+
+TEST(Pipeline, PlanesPresetsFindTheRenderedDisparities) {
+  const reference::RenderedPair pair = reference::renderPair(60, 100, 3, 8, 5);
+  for (const char* preset : {"paper", "accurate"}) {
+    PipelineParams params = loadPreset(preset);
+    ASSERT_EQ(params.optimizer, OptimizerType::kLocalExpansion);
+    params.search = {0, 12};
+    const PipelineResult result = Pipeline(params).run(pair.left, pair.right);
+    const DisparityErrors errors = evaluateDisparity(result.disparity, pair.truth, pair.visible);
+    EXPECT_EQ(errors.density, 100.0) << preset;
+    EXPECT_LT(errors.bad[3], 6.0) << preset << ": share off by more than 1 px";
+  }
+}
+
+TEST(Pipeline, NewParametersOfOtherStagesLeaveThePlanesOfThePreviousFrame) {
+  const reference::RenderedPair pair = reference::renderPair(40, 60, 3, 8, 5);
+  PipelineParams params = loadPreset("accurate");
+  params.search = {0, 12};
+  params.local_expansion.warm_start = true;
+  params.local_expansion.initialization = PlaneInitialization::kRandom;
+  params.local_expansion.iterations = 1;
+  Pipeline pipeline(params);
+  const double first = pipeline.run(pair.left, pair.right).energies.front();
+  params.speckle_filter.max_size = 10;
+  pipeline.setParams(params);
+  const double second = pipeline.run(pair.left, pair.right).energies.front();
+  EXPECT_LT(second, first) << "the start knows planes from before";
+  params.local_expansion.lambda += 0.01;
+  pipeline.setParams(params);
+  params.local_expansion.lambda -= 0.01;
+  pipeline.setParams(params);
+  EXPECT_EQ(pipeline.run(pair.left, pair.right).energies.front(), first) << "a new optimiser starts afresh";
 }
 
 TEST(Pipeline, RefusesWhatDoesNotFit) {

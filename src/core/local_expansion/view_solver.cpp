@@ -203,10 +203,12 @@ ViewSolver::Candidates ViewSolver::propose(int layer, const Cell& cell, int roun
     const float reach = 0.5F * tilt * static_cast<float>(view_.range.count - 1);
     planes.push_back(proposeRandom(labels, cell.core, view_.range, reach, tilt, random));
   }
+  if (round > params_.unary_iterations) return planes;  // what is known beforehand pays in the first moves only
   Plane triangle;
   const int x = cell.core.x + random.below(cell.core.width);
   const int y = cell.core.y + random.below(cell.core.height);
   if (seeds_.planeAt(x, y, triangle)) planes.push_back(triangle);
+  if (view_.previous != nullptr) planes.push_back(view_.previous->plane(x, y));
   return planes;
 }
 
