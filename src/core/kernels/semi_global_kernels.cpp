@@ -195,7 +195,7 @@ void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&
     Signed index = first - winner[k];
     for (int i = 0; i < count; i += kSumLanes, index += kSumLanes) {
       const Signed values = loadSums(sums[k] + i, index, count - winner[k]);
-      others = smallerOf(others, (index == -1) | (index == 0) | (index == 1) ? none : values);
+      others = smallerOf(others, ((index == -1) | (index == 0) | (index == 1)) ? none : values);
     }
     half[k] = smallerHalf<std::int16_t>(others);
   }
