@@ -153,6 +153,9 @@ class MatchTest(unittest.TestCase):
         self.refused(1, "truncated PNG", small, self.right, *output)
         floats = self.path("floats.pfm")
         write_pfm(floats, self.truth)
+        self.refused(1, "not PNG, JPEG, TIFF", floats, self.right, *output)
+        floats = self.path("floats.tiff")
+        cv2.imwrite(floats, self.truth)
         self.refused(1, "8 or 16 bits", floats, self.right, *output)
 
 
