@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc/detail/gcgraph.hpp>
 #include <random>
 #include <vector>
 
@@ -108,6 +109,69 @@ TEST(ExpansionMove, IsTheBestOfAllMoves) {
     const double after = plainEnergy(scene.image, scene.labels);
     EXPECT_NEAR(after, best, 2e-4) << "seed " << seed;
     EXPECT_NEAR(after - before, change, 2e-4) << "seed " << seed;
+  }
+}
+
+/// The least energy that handing `plane` to pixels of the region can give, by OpenCV's maximum flow.
+double leastEnergy(const Scene& scene, const cv::Rect& region, const Plane& plane, const std::vector<float>& costs) {
+  const int count = region.area();
+  const auto node = [&](cv::Point p) {
+    return region.contains(p) ? (p.y - region.y) * region.width + p.x - region.x : -1;
+  };
+  std::vector<double> linear(count, 0.0);  // cost of taking the plane, less the edges
+  cv::detail::GCGraph<double> graph(count, 8 * count);
+  for (int i = 0; i < count; ++i) graph.addVtx();
+  double constant = 0.0;
+  for (int y = 0; y < scene.labels.height; ++y) {
+    for (int x = 0; x < scene.labels.width; ++x) {
+      const cv::Point p(x, y);
+      const double current = scene.labels.cost[scene.labels.index(x, y)];
+      constant += current;
+      if (node(p) >= 0) linear[node(p)] += static_cast<double>(costs[node(p)]) - current;
+      for (const cv::Point step : {cv::Point(1, 0), cv::Point(1, 1), cv::Point(0, 1), cv::Point(-1, 1)}) {
+        const cv::Point q = p + step;
+        if (q.x < 0 || q.x >= scene.labels.width || q.y >= scene.labels.height) continue;
+        const auto pair = [&](const Plane& f, const Plane& g) {
+          return reference::pairCost(scene.image, p, q, plain(f), plain(g), kLambda, kTau, kGamma, kEpsilon);
+        };
+        const Plane f = scene.labels.plane(x, y);
+        const Plane g = scene.labels.plane(q.x, q.y);
+        const double keep = pair(f, g);
+        constant += keep;
+        if (node(p) >= 0 && node(q) >= 0) {
+          const double edge = std::max(0.0, 0.5 * (pair(plane, g) + pair(f, plane) - keep));
+          linear[node(p)] += pair(plane, g) - keep - edge;
+          linear[node(q)] += pair(f, plane) - keep - edge;
+          graph.addEdges(node(p), node(q), edge, edge);
+        } else if (node(p) >= 0) {
+          linear[node(p)] += pair(plane, g) - keep;
+        } else if (node(q) >= 0) {
+          linear[node(q)] += pair(f, plane) - keep;
+        }
+      }
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    graph.addTermWeights(i, std::max(-linear[i], 0.0), std::max(linear[i], 0.0));
+    constant += std::min(linear[i], 0.0);
+  }
+  return constant + graph.maxFlow();
+}
+
+/// Regions too large to try all moves: some pixels are decided by the bounds, some by the cut.
+TEST(ExpansionMove, LargeMovesAreAsGoodAsOpenCvsCuts) {
+  for (int seed = 0; seed < 40; ++seed) {
+    Scene scene(25, 19, seed % 2 == 0 ? CV_8UC3 : CV_8UC1, seed);
+    const cv::Rect region(seed % 5, seed % 3, 20 - seed % 4, 16);
+    const Smoothness smoothness = scene.smoothness();
+    const Plane plane = scene.randomPlane();
+    std::vector<float> costs(region.area());
+    for (float& cost : costs) cost = scene.value(0.0F, seed % 3 == 0 ? 1.0F : 2.5F);
+    const double best = leastEnergy(scene, region, plane, costs);
+    ExpansionMove move;
+    move.begin(smoothness, region, scene.labels);
+    move.offer(plane, costs.data());
+    EXPECT_NEAR(plainEnergy(scene.image, scene.labels), best, 1e-3) << "seed " << seed;
   }
 }
 
