@@ -40,6 +40,7 @@ struct LocalExpansionParams {
   PlaneInitialization initialization = PlaneInitialization::kSemiGlobal;
   int unary_iterations = 0;    ///< first rounds without smoothness: a pixel takes what lowers its own cost
   int iterations = 5;          ///< rounds of expansion moves
+  int right_iterations = 5;    ///< the same in the right view, which serves the check alone
   double fine_cell = 1.0;      ///< % of the image width
   double middle_cell = 3.0;    ///< % of the image width
   double coarse_cell = 9.0;    ///< % of the image width

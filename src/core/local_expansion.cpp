@@ -70,7 +70,9 @@ class Run {
     if (!initial.empty()) view.initial = side == kLeft ? initial : mirrored(initial);
     if (!previous.empty() && previous.size() == pair.left.size()) view.previous = &previous;
     view.number = static_cast<std::uint64_t>(side);
-    lx::ViewSolver solver(view, params_);
+    LocalExpansionParams own = params_;
+    if (side == kRight) own.iterations = params_.right_iterations;
+    lx::ViewSolver solver(view, own);
     return solver.solve(stop_, [&](int round, double energy) { report(side, round, energy, energies); });
   }
 
@@ -87,9 +89,10 @@ class Run {
 
   void report(int side, int round, double energy, std::vector<double>* energies) const {
     if (energies != nullptr) energies->push_back(energy);
-    const int per_view = params_.unary_iterations + params_.iterations + 1;
-    const int views = params_.both_views ? 2 : 1;
-    if (input_.progress) input_.progress(side * per_view + round + 1, views * per_view, energy);
+    if (!input_.progress) return;
+    const int of_left = params_.unary_iterations + params_.iterations + 1;
+    const int of_right = params_.both_views ? params_.unary_iterations + params_.right_iterations + 1 : 0;
+    input_.progress((side == kLeft ? 0 : of_left) + round + 1, of_left + of_right, energy);
   }
 
   const OptimizerInput& input_;

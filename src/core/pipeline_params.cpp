@@ -212,6 +212,8 @@ void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
   list.add("unary_iterations", p.unary_iterations, 0, 100, "", "First rounds that leave out the smoothness term.");
   list.add("iterations", p.iterations, 0, 100, "",
            "Rounds of expansion moves; more lower the energy a little further.");
+  list.add("right_iterations", p.right_iterations, 0, 100, "",
+           "The same in the right view, which serves the check alone.");
   list.add("fine_cell", p.fine_cell, 0.1, 100.0, "%", "Side of a cell of the fine layer, in percent of the width.");
   list.add("middle_cell", p.middle_cell, 0.1, 100.0, "%", "Side of a cell of the middle layer.");
   list.add("coarse_cell", p.coarse_cell, 0.1, 100.0, "%", "Side of a cell of the coarse layer.");

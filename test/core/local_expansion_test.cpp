@@ -77,6 +77,7 @@ LocalExpansionParams testParams() {
   params.middle_cell = 12.0;
   params.coarse_cell = 30.0;
   params.iterations = 2;
+  params.right_iterations = 2;
   return params;
 }
 
@@ -134,6 +135,17 @@ TEST(LocalExpansion, EnergyNeverRises) {
     for (std::size_t i = 1; i < energies.size(); ++i) EXPECT_LE(energies[i], energies[i - 1] + 1e-6 * energies[0]);
     EXPECT_LT(energies[4], energies[0]);
   }
+}
+
+TEST(LocalExpansion, ViewsHaveRoundsOfTheirOwn) {
+  const Scene scene;
+  LocalExpansionParams params = testParams();
+  params.right_iterations = 0;
+  const OptimizerOutput without = run(scene, params);
+  params.right_iterations = 1;
+  const OptimizerOutput with = run(scene, params);
+  EXPECT_EQ(with.energies, without.energies) << "those of the left view";
+  EXPECT_GT(cv::norm(with.disparity_right, without.disparity_right, cv::NORM_INF), 0.0);
 }
 
 TEST(LocalExpansion, RandomStartReachesTheEnergyOfTheSemiGlobalStart) {
