@@ -3,8 +3,8 @@
 #
 # fdp_stereo_add_kernels(target source...): compiles each kernel source once per instruction set, in a namespace of its
 # own (FDP_STEREO_ISA), and leaves the choice to run time (src/core/simd.hpp). A kernel source includes nothing but
-# <cstdint>-like headers: an inline function of a library compiled for AVX2 could otherwise be picked by the
-# linker for everybody.
+# <cstdint>-like headers and intrinsics, which are always inlined: any other inline function compiled for AVX2 could be
+# picked by the linker for everybody.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   set(FDP_STEREO_ISAS baseline avx2 avx512)
   set(FDP_STEREO_FLAGS_baseline "")

@@ -19,7 +19,10 @@ struct CensusParams {
 /// grey: CV_8UC1 or CV_16UC1. Throws std::invalid_argument for another type or a window over 64 neighbours.
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes);
 
-/// The codes of row y alone (0 <= y < rows), in memory for one code per column; otherwise as above.
+/// Throws what computeCensus() throws for such an image or window.
+void checkCensus(const cv::Mat& grey, const CensusParams& params);
+
+/// The codes of row y alone (0 <= y < rows), in memory for one code per column. Expects what checkCensus() lets pass.
 void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes);
 
 }  // namespace fdp_stereo

@@ -11,18 +11,6 @@
 namespace fdp_stereo {
 namespace {
 
-void check(const cv::Mat& grey, const CensusParams& params) {
-  if (grey.type() != CV_8UC1 && grey.type() != CV_16UC1) {
-    throw std::invalid_argument("census needs a grey image of 8 or 16 bits, not type " + std::to_string(grey.type()));
-  }
-  const bool odd = params.window_width % 2 == 1 && params.window_height % 2 == 1;
-  const int neighbours = params.window_width * params.window_height - 1;
-  if (!odd || params.window_width < 1 || params.window_height < 1 || neighbours < 1 || neighbours > 64) {
-    throw std::invalid_argument("census window " + std::to_string(params.window_width) + " x " +
-                                std::to_string(params.window_height) + ": sides must be odd, with 1 to 64 neighbours");
-  }
-}
-
 void compare(const CensusKernels& kernels, const std::uint8_t* neighbour, const std::uint8_t* centre, int count,
              std::uint8_t* bits) {
   kernels.compareU8(neighbour, centre, count, bits);
@@ -84,8 +72,19 @@ void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, std::ui
 
 }  // namespace
 
+void checkCensus(const cv::Mat& grey, const CensusParams& params) {
+  if (grey.type() != CV_8UC1 && grey.type() != CV_16UC1) {
+    throw std::invalid_argument("census needs a grey image of 8 or 16 bits, not type " + std::to_string(grey.type()));
+  }
+  const bool odd = params.window_width % 2 == 1 && params.window_height % 2 == 1;
+  const int neighbours = params.window_width * params.window_height - 1;
+  if (!odd || params.window_width < 1 || params.window_height < 1 || neighbours < 1 || neighbours > 64) {
+    throw std::invalid_argument("census window " + std::to_string(params.window_width) + " x " +
+                                std::to_string(params.window_height) + ": sides must be odd, with 1 to 64 neighbours");
+  }
+}
+
 void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
-  check(grey, params);
   if (grey.depth() == CV_8U) {
     censusRowAt<std::uint8_t>(grey, params, y, codes);
   } else {
@@ -94,7 +93,7 @@ void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, st
 }
 
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
-  check(grey, params);
+  checkCensus(grey, params);
   codes.resize(grey.total());
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < grey.rows; ++y) {

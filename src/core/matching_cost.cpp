@@ -75,11 +75,15 @@ struct MatchingCost::Source {
   std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
 
   void load(const StereoPair& pair, const MatchingCostParams& params, float step);
+  /// Lets go of the images.
+  void release();
   void loadCensus(const StereoPair& pair, const MatchingCostParams& params);
   void loadTheta(const MatchingCostParams& params, float step);
 };
 
 void MatchingCost::Source::loadCensus(const StereoPair& pair, const MatchingCostParams& params) {
+  checkCensus(pair.left_grey, params.census);  // here, for nothing may be thrown among threads
+  checkCensus(pair.right_grey, params.census);
   census = params.census;
   scales = std::clamp(params.scales, 1, 3);
   double sum = 0.0;
@@ -126,6 +130,15 @@ void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams
   scales = 0;
   if (usesCensus(params.type)) loadCensus(pair, params);
   loadTheta(params, step);
+}
+
+void MatchingCost::Source::release() {
+  left.clear();
+  right.clear();
+  for (int i = 0; i < scales; ++i) {
+    left_blurred[i].release();
+    right_blurred[i].release();
+  }
 }
 
 namespace {
@@ -284,6 +297,7 @@ void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const M
   } else {
     fillVolume<std::uint16_t>(*source_, params, volume);
   }
+  source_->release();
 }
 
 void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,

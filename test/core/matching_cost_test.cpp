@@ -199,6 +199,28 @@ TEST(MatchingCost, NeverModifiesTheImages) {
   EXPECT_EQ(cv::norm(right, right_copy, cv::NORM_INF), 0.0);
 }
 
+TEST(MatchingCost, RefusesACensusThatThereIsNot) {
+  StereoPair pair = prepareImages(reference::noise(9, 30, CV_8UC1, 1), reference::noise(9, 30, CV_8UC1, 2));
+  MatchingCostParams params = paramsOf(MatchingCostType::kRhoCensus);
+  params.census = {4, 5};
+  EXPECT_THROW(volumeOf(pair, {0, 8}, params), std::invalid_argument);
+  params.census = {5, 5};
+  pair.right_grey.convertTo(pair.right_grey, CV_32F);
+  EXPECT_THROW(volumeOf(pair, {0, 8}, params), std::invalid_argument);
+}
+
+TEST(MatchingCost, LetsGoOfTheImages) {
+  const cv::Mat colour = reference::noise(9, 30, CV_8UC3, 1);
+  const StereoPair pair = prepareImages(colour, colour);
+  const auto owners = [&] { return pair.left.u->refcount + pair.left_grey.u->refcount + pair.right_grey.u->refcount; };
+  const int before = owners();
+  MatchingCost matching_cost;
+  CostVolume volume;
+  const MatchingCostParams params = paramsOf(MatchingCostType::kRhoCensus, 3);
+  matching_cost.compute(pair, {0, 8}, params, stepOf(params), volume);
+  EXPECT_EQ(owners(), before);
+}
+
 TEST(MatchingCost, CensusSeesThe16BitsThatColourDoesNot) {
   cv::Mat left;
   cv::Mat right;
