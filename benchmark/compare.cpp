@@ -127,11 +127,6 @@ void printRow(const Row& row) {
   std::fflush(stdout);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
-
 /// Medians of times and memory, weighted means of the errors of the rows of one folder and method.
 Row summarise(const std::vector<Row>& rows) {
   Row summary = rows.front();

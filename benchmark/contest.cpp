@@ -23,12 +23,6 @@ double elapsedMs(Clock::time_point since) {
 
 double cpuMs() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n == 0 ? 0.0 : 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
 /// Times of one contestant, run by run.
 struct Record {
   std::vector<double> wall_ms, cpu_ms;
@@ -94,6 +88,12 @@ Contestant makeContestant(const std::string& name, const Scene& scene, int threa
     if (name == peerName(peer)) return makePeer(peer, scene);
   }
   return makePreset(name, scene, threads);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n == 0 ? 0.0 : 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 std::vector<Score> runContest(const std::vector<std::string>& names, const Scene& scene, int threads, int runs) {

@@ -34,6 +34,9 @@ const std::vector<std::string>& contestantNames();
 /// another name.
 Contestant makeContestant(const std::string& name, const Scene& scene, int threads);
 
+/// Of at least one value.
+double median(std::vector<double> values);
+
 /// One frame of each to warm up, then `runs` rounds in which each has its turn. Medians.
 std::vector<Score> runContest(const std::vector<std::string>& names, const Scene& scene, int threads, int runs);
 
