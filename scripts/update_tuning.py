@@ -45,7 +45,7 @@ CASES = (
      WHOLE, {"left_right_check.enabled": "false", "speckle_filter.max_size": "0"},
      {"left_right_check.enabled": "true", "speckle_filter.max_size": "0"}),
     ("speckles", "Small islands of wrong disparities",
-     "Raise `speckle_filter.max_size` (`speckle_size` in ROS): connected regions with at most that many pixels are removed. "
+     "Raise `speckle_filter.max_size` (`speckle_size` in ROS): connected regions with fewer pixels than that are removed. "
      "If it is too large, thin things are removed too.",
      SEAT, {"speckle_filter.max_size": "0"}, {"speckle_filter.max_size": "300"}),
     ("uniqueness", "Too many holes",
