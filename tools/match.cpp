@@ -77,6 +77,7 @@ std::string timingsJson(const PipelineResult& result, const PipelineParams& para
   json.add("matches", static_cast<double>(result.matches.size()))
       .add("seeds", static_cast<double>(result.seeds.size()));
   json.add("rejected_seeds", static_cast<double>(result.rejected_seeds.size()));
+  json.add("quasi_dense_seeds", static_cast<double>(result.quasi_dense_seeds.size()));
   json.add("propagated_share", result.propagated_share).add("feature_note", result.feature_note);
   const RowAlignment& rows = result.row_alignment;
   json.open('{', "row_alignment").add("model", rows.model.name()).add("matches_used", rows.matches_used);
@@ -110,7 +111,7 @@ void writeOutputs(const Options& options, const PipelineParams& params, const cv
   }
   if (!options.draw_seeds.empty()) {
     const cv::Mat shown = prepareImages(left, left).left;
-    writeImage(options.draw_seeds, drawSeeds(shown, {result.seeds, result.rejected_seeds}, params.search));
+    writeImage(options.draw_seeds, drawSeeds(shown, allSeeds(result), params.search));
   }
   if (!options.timings.empty()) writeText(options.timings, timingsJson(result, params));
 }

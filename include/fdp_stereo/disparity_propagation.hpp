@@ -39,4 +39,19 @@ struct DisparityPropagationParams {
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           CostVolume& volume);
 
+/// Disparities of a volume with fractions of a pixel: entry i is min + i / steps.
+struct DisparityAxis {
+  int min = 0;
+  int steps = 1;
+};
+/// The same for such a volume; lengths along the disparities stay in px.
+double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                          DisparityAxis axis, CostVolume& volume);
+
+/// Seeds and how they are spread.
+struct SeedPrior {
+  const Seeds& seeds;
+  DisparityPropagationParams params;
+};
+
 }  // namespace fdp_stereo

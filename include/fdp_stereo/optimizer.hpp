@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fdp_stereo/cost_volume.hpp"
+#include "fdp_stereo/disparity_propagation.hpp"
 #include "fdp_stereo/matching_cost.hpp"
 #include "fdp_stereo/types.hpp"
 
@@ -27,6 +28,7 @@ struct OptimizerInput {
   const std::atomic<bool>* cancel = nullptr;          ///< set from another thread: return the best so far, soon
   const MatchingCostParams* matching_cost = nullptr;  ///< what the volume was computed with, where it was computed
   OptimizerProgress progress;                         ///< may be empty
+  std::vector<SeedPrior> priors;                      ///< what was spread in the volume already, for other volumes
 };
 
 struct OptimizerOutput {

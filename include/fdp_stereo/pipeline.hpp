@@ -21,11 +21,15 @@ struct PipelineResult {
   std::string feature_note;  ///< why another detector than the wanted one ran; empty otherwise
   Seeds seeds;
   Seeds rejected_seeds;
+  Seeds quasi_dense_seeds;  ///< of the first matching, where that is enabled
   RowAlignment row_alignment;
   double propagated_share = 0.0;  ///< share of the pixels whose costs the seeds changed
   std::vector<double> energies;   ///< of the optimiser, per iteration
   std::vector<StageTime> times;   ///< in the order of the stages
 };
+
+/// What drawSeeds() shows of a result.
+SparseDisparity allSeeds(const PipelineResult& result);
 
 /// The method: stages 1 to 8, one after another. Owns their buffers; one instance per thread.
 class Pipeline {
@@ -52,6 +56,7 @@ class Pipeline {
 
  private:
   struct Buffers;
+  Seeds matchQuasiDense(const StereoPair& pair, const CostVolume& volume);
   RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
   void restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given, PipelineResult& result) const;
   void postProcess(const cv::Mat& left, OptimizerOutput& optimized, PipelineResult& result) const;

@@ -15,6 +15,7 @@
 #include "fdp_stereo/local_expansion.hpp"
 #include "fdp_stereo/matching_cost.hpp"
 #include "fdp_stereo/optimizer.hpp"
+#include "fdp_stereo/quasi_dense.hpp"
 #include "fdp_stereo/row_alignment.hpp"
 #include "fdp_stereo/semi_global.hpp"
 #include "fdp_stereo/sparse_disparity.hpp"
@@ -34,6 +35,7 @@ struct PipelineParams {
   MatchingCostParams matching_cost;
   SparseDisparityParams sparse_disparity;
   DisparityPropagationParams disparity_propagation;
+  QuasiDenseParams quasi_dense;
   OptimizerType optimizer = OptimizerType::kSemiGlobal;
   WinnerTakesAllParams winner_takes_all;
   SemiGlobalParams semi_global;

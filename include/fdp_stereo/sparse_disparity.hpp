@@ -29,8 +29,8 @@ struct SparseDisparity {
 SparseDisparity buildSparseDisparity(const FeatureMatches& matches, const Seeds& external, const StereoPair& pair,
                                      DisparityRange range, const SparseDisparityParams& params);
 
-/// The seeds as discs on the dimmed left image, coloured by disparity over the range, rejected ones as crosses.
-/// CV_8UC3. left: 8-bit, 1 or 3 channels.
+/// The seeds as discs on the dimmed left image, coloured by disparity over the range, quasi-dense ones as dots,
+/// rejected ones as crosses. CV_8UC3. left: 8-bit, 1 or 3 channels.
 cv::Mat drawSeeds(const cv::Mat& left, const SparseDisparity& sparse, DisparityRange range);
 
 }  // namespace fdp_stereo

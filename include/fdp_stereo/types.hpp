@@ -44,8 +44,8 @@ struct FeatureMatch {
 };
 using FeatureMatches = std::vector<FeatureMatch>;
 
-/// Where a seed came from.
-enum class SeedSource { kFeature, kPoints, kDepth, kDisparity, kFile };
+/// Where a seed came from: matched features, another sensor, a file, or a first matching of the pair (quasi_dense.hpp).
+enum class SeedSource { kFeature, kPoints, kDepth, kDisparity, kFile, kQuasiDense };
 
 /// A sparse disparity: the scene at left pixel (x, y) has disparity d (all px, real-valued).
 struct Seed {

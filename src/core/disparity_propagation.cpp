@@ -25,11 +25,12 @@ struct GridSeed {
 
 /// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
 /// They live until the next call of this thread.
-const std::vector<GridSeed>& onGrid(const Seeds& seeds, const CostVolume& volume) {
+const std::vector<GridSeed>& onGrid(const Seeds& seeds, DisparityAxis axis, const CostVolume& volume) {
   thread_local std::vector<GridSeed> grid;  // keeps its memory
   grid.clear();
   for (const Seed& seed : seeds) {
-    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(seed.d)) - volume.range().min,
+    const float index = (seed.d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
+    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(index)),
                      static_cast<int>(grid.size())};
     const bool inside = g.x >= 0 && g.y >= 0 && g.x < volume.width() && g.y < volume.height();
     if (inside && g.index >= 0 && g.index < volume.range().count) grid.push_back(g);
@@ -101,14 +102,19 @@ void check(const cv::Mat& left, const DisparityPropagationParams& params, const 
 
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           CostVolume& volume) {
+  return propagateDisparity(seeds, left, params, {volume.range().min, 1}, volume);
+}
+
+double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                          DisparityAxis axis, CostVolume& volume) {
   check(left, params, volume);
   thread_local Seeds used;  // keeps its memory
   used.clear();
   std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(used),
                [&](const Seed& s) { return params.image_seeds || s.source != SeedSource::kFeature; });
   if (used.empty()) return 0.0;
-  if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, volume);
-  const std::vector<GridSeed>& grid = onGrid(used, volume);
+  if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, axis, volume);
+  const std::vector<GridSeed>& grid = onGrid(used, axis, volume);
   return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
                                                   : propagateWindows<std::uint16_t>(grid, left, params, volume);
 }

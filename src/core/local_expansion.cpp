@@ -60,6 +60,7 @@ class Run {
     view.volume = &volume;
     if (params_.disparity_steps > 1) {
       lx::computeSubpixelVolume(pair, view.range, *input_.matching_cost, params_.disparity_steps, volume);
+      spreadPriors(side, pair.left, volume);
     } else if (side == kRight) {
       lx::mirrorVolume(input_.volume, volume);
     } else {
@@ -77,6 +78,17 @@ class Run {
   }
 
  private:
+  // The given volume has them already.
+  void spreadPriors(int side, const cv::Mat& image, CostVolume& volume) const {
+    for (const SeedPrior& prior : input_.priors) {
+      Seeds seeds = prior.seeds;
+      if (side == kRight) {
+        for (Seed& seed : seeds) seed.x = static_cast<float>(image.cols - 1) - (seed.x - seed.d);
+      }
+      propagateDisparity(seeds, image, prior.params, {input_.volume.range().min, params_.disparity_steps}, volume);
+    }
+  }
+
   // In the coordinates of the view: the right one is mirrored.
   std::vector<lx::SurfacePoint> seedsOf(int side) const {
     std::vector<lx::SurfacePoint> points;
@@ -112,11 +124,6 @@ cv::Mat confidenceOf(const lx::Labels& labels, const cv::Mat& consistent, double
     }
   }
   return result;
-}
-
-void repair(const cv::Mat& image, const cv::Mat& consistent, const LocalExpansionParams& params, lx::Labels& labels) {
-  lx::fillPlanes(consistent, labels);
-  lx::filterPlanes(image, consistent, params.median_radius_px, params.median_gamma, labels);
 }
 
 }  // namespace
@@ -155,8 +162,9 @@ void LocalExpansion::optimize(const OptimizerInput& input, OptimizerOutput& outp
   output.confidence = confidenceOf(left, consistent, params_.data_threshold);
   if (params_.both_views) {
     const cv::Mat consistent_right = lx::consistentPixels(right, left, params_.max_difference_px);
-    repair(input.pair.left, consistent, params_, left);
-    repair(mirrored(input.pair.right), consistent_right, params_, right);
+    lx::fillPlanes(consistent, left);
+    lx::filterPlanes(input.pair.left, consistent, params_.median_radius_px, params_.median_gamma, left);
+    lx::fillPlanes(consistent_right, right);  // it serves the check alone, so its holes need no median
     output.disparity_right = mirrored(lx::disparityOf(right, input.volume.range()));
   }
   output.disparity_left = lx::disparityOf(left, input.volume.range());

@@ -72,10 +72,16 @@ bool sameOptimizer(PipelineParams a, PipelineParams b) {
   return true;
 }
 
-/// The finest cost step with which a path cost of the optimiser still fits the bits of the volume.
+bool wantsQuasiDense(const PipelineParams& params) {
+  return params.disparity_propagation.enabled && params.quasi_dense.enabled;
+}
+
+/// The finest cost step with which a path cost still fits the bits of the volume.
 float costStep(const PipelineParams& params, const Optimizer& optimizer) {
   const double steps = params.matching_cost.bits == 8 ? 252.0 : 8188.0;
-  return static_cast<float>((maxMatchingCost(params.matching_cost) + optimizer.costHeadroom()) / steps);
+  double headroom = optimizer.costHeadroom();
+  if (wantsQuasiDense(params)) headroom = std::max(headroom, SemiGlobal(params.semi_global).costHeadroom());
+  return static_cast<float>((maxMatchingCost(params.matching_cost) + headroom) / steps);
 }
 
 void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::Size size, DisparityRange search) {
@@ -91,6 +97,12 @@ void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::S
 }
 
 }  // namespace
+
+SparseDisparity allSeeds(const PipelineResult& result) {
+  SparseDisparity all{result.quasi_dense_seeds, result.rejected_seeds};
+  all.seeds.insert(all.seeds.end(), result.seeds.begin(), result.seeds.end());  // last, so that they are on top
+  return all;
+}
 
 struct Pipeline::Buffers {
   MatchingCost matching_cost;
@@ -144,13 +156,24 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   result.rejected_seeds = std::move(sparse.rejected);
   clock.done("sparse_disparity");
 
+  std::vector<SeedPrior> priors;
   if (params_.disparity_propagation.enabled) {
+    priors.push_back({result.seeds, params_.disparity_propagation});
     result.propagated_share = propagateDisparity(result.seeds, pair.left, params_.disparity_propagation, volume);
   }
   clock.done("disparity_propagation");
 
+  if (wantsQuasiDense(params_)) {
+    result.quasi_dense_seeds = matchQuasiDense(pair, volume);
+    clock.done("quasi_dense_matching");
+    priors.push_back({result.quasi_dense_seeds, surfacesOf(params_.quasi_dense)});
+    const double share = propagateDisparity(result.quasi_dense_seeds, pair.left, priors.back().params, volume);
+    result.propagated_share = std::max(result.propagated_share, share);
+    clock.done("quasi_dense_propagation");
+  }
+
   OptimizerOutput optimized;  // its maps become those of the result
-  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, progress_}, optimized);
+  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, progress_, priors}, optimized);
   result.energies = optimized.energies;
   clock.done("optimizer");
 
@@ -159,6 +182,14 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   if (!scaling.identity()) restoreSize(scaling, pair.left, given_left, result);
   clock.done("post_processing");
   return result;
+}
+
+Seeds Pipeline::matchQuasiDense(const StereoPair& pair, const CostVolume& volume) {
+  if (auto* shared = dynamic_cast<SemiGlobal*>(optimizer_.get())) {  // one set of buffers for both
+    return quasiDenseSeeds(volume, pair, params_.quasi_dense, *shared);
+  }
+  SemiGlobal own(params_.semi_global);
+  return quasiDenseSeeds(volume, pair, params_.quasi_dense, own);
 }
 
 RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
@@ -194,6 +225,7 @@ void Pipeline::restoreSize(const Scaling& scaling, const cv::Mat& matched, const
   result.confidence.setTo(0.0F, ~(result.disparity == result.disparity));
   result.matches = scaling.grow(std::move(result.matches));
   result.seeds = scaling.grow(std::move(result.seeds));
+  result.quasi_dense_seeds = scaling.grow(std::move(result.quasi_dense_seeds));
   result.rejected_seeds = scaling.grow(std::move(result.rejected_seeds));
   result.row_alignment = scaling.grow(std::move(result.row_alignment));
 }

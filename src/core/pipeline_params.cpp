@@ -158,6 +158,21 @@ void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagati
            "Form surface: how far from the surface of the seeds a disparity is still nearly free.");
 }
 
+void addQuasiDense(ParamList& list, QuasiDenseParams& p) {
+  list.stage("quasi_dense");
+  list.add("enabled", p.enabled,
+           "Match some rows roughly first and spread what is found along surfaces; only with disparity_propagation.");
+  list.add("row_step", p.row_step, 1, 16, "px", "Every so many rows are matched; smaller costs time.");
+  list.add("spacing_px", p.spacing_px, 1, 64, "px", "Distance of the seeds that are taken from the rows.");
+  list.add("gamma", p.gamma, 0.1, 1000.0, "", "Colour difference at which the influence of such a seed falls to 1/e.");
+  list.add("reach_px", p.reach_px, 1.0, 1000.0, "px",
+           "Way over even colour at which the influence of such a seed falls to 1/e.");
+  list.add("strength", p.strength, 0.0, 1.0, "",
+           "Share of the seeds' prior in the costs; larger fills more places without texture, and more edges suffer.");
+  list.add("spread_px", p.spread_px, 0.1, 20.0, "px",
+           "How far from the surface of the seeds a disparity is still nearly free.");
+}
+
 void addOptimizers(ParamList& list, PipelineParams& p) {
   const std::vector<std::string> fits = {"none", "parabola", "equiangular", "blended"};
   list.stage("optimizer");
@@ -450,6 +465,7 @@ std::vector<ParamRef> paramList(PipelineParams& params) {
   addRowAlignment(list, params.row_alignment);
   addMatchingCost(list, params.matching_cost);
   addSeeds(list, params.sparse_disparity, params.disparity_propagation);
+  addQuasiDense(list, params.quasi_dense);
   addOptimizers(list, params);
   addLocalExpansionModel(list, params.local_expansion);
   addLocalExpansionSearch(list, params.local_expansion);

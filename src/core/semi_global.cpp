@@ -52,14 +52,27 @@ struct SweepBuffers {
   std::vector<T> p2;                       // [path][x]
 };
 
-/// One sweep over the image, downwards from the top left or upwards from the bottom right: the paths from the
+/// The rows of an image that take part: every step-th one.
+struct RowGrid {
+  int step = 1;
+  int first = 0;
+  int count = 0;
+
+  RowGrid(int height, int row_step) : step(row_step), first(std::min(row_step / 2, height - 1)) {
+    count = (height - 1 - first) / step + 1;
+  }
+  int imageRow(int row) const { return first + row * step; }
+};
+
+/// One sweep over the rows, downwards from the top left or upwards from the bottom right: the paths from the
 /// predecessor in the row and from the row before.
 template <typename T>
 class Sweep {
  public:
-  Sweep(const CostVolume& volume, const cv::Mat& grey, const Penalties<T>& penalties, int paths, bool upwards,
-        SweepBuffers<T>& buffers)
+  Sweep(const CostVolume& volume, const RowGrid& rows, const cv::Mat& grey, const Penalties<T>& penalties, int paths,
+        bool upwards, SweepBuffers<T>& buffers)
       : volume_(volume),
+        rows_(rows),
         grey_(grey),
         penalties_(penalties),
         paths_(paths / 2),
@@ -79,19 +92,19 @@ class Sweep {
     buffers_.p2.resize(static_cast<std::size_t>(paths_) * width_);
   }
 
-  /// Path costs of row y; rows come in the order of the sweep. sums: width x stride.
-  void row(int y, bool add, std::uint16_t* sums) {
+  /// Path costs of one row of the grid; rows come in the order of the sweep. sums: width x stride.
+  void row(int number, bool add, std::uint16_t* sums) {
     SweepRow<T> row;
     row.width = width_;
     row.count = volume_.stride();
     row.backwards = upwards_;
     row.slot = static_cast<std::ptrdiff_t>(slot_);
     row.p1 = penalties_.p1;
-    row.costs = volume_.at<T>(y, 0);
+    row.costs = volume_.at<T>(rows_.imageRow(number), 0);
     row.sums = sums;
     clear(buffers_.along.data() + slot_);
     for (int i = 0; i < 2; ++i) row.along[i] = buffers_.along.data() + i * slot_ + CostVolume::kPadding;
-    for (int k = 0; k < paths_; ++k) row.p2[k] = fillJumps(k, y);
+    for (int k = 0; k < paths_; ++k) row.p2[k] = fillJumps(k, number);
     for (int k = 1; k < paths_; ++k) connect(k, row);
     sweepRow(FDP_STEREO_SELECT(semiGlobalKernels), row, paths_, add);
     current_ ^= 1;
@@ -117,11 +130,11 @@ class Sweep {
     row.smallest_after[path] = buffers_.smallest[current_].data() + after;
   }
 
-  /// P2 of every pixel of row y towards its predecessor; outside the image there is none, and any value will do.
-  const T* fillJumps(int path, int y) {
-    const int y_before = path == 0 ? y : std::clamp(upwards_ ? y + 1 : y - 1, 0, grey_.rows - 1);
-    const auto* here = grey_.ptr<std::uint8_t>(y);
-    const auto* before = grey_.ptr<std::uint8_t>(y_before) + shift(path);
+  /// P2 of every pixel of a row towards its predecessor; outside the image there is none, and any value will do.
+  const T* fillJumps(int path, int number) {
+    const int before_number = path == 0 ? number : std::clamp(upwards_ ? number + 1 : number - 1, 0, rows_.count - 1);
+    const auto* here = grey_.ptr<std::uint8_t>(rows_.imageRow(number));
+    const auto* before = grey_.ptr<std::uint8_t>(rows_.imageRow(before_number)) + shift(path);
     T* p2 = buffers_.p2.data() + static_cast<std::size_t>(path) * width_;
     const int first = std::max(0, -shift(path)), last = width_ - std::max(0, shift(path));
     std::fill(p2, p2 + first, T{0});
@@ -131,6 +144,7 @@ class Sweep {
   }
 
   const CostVolume& volume_;
+  const RowGrid rows_;
   const cv::Mat& grey_;
   const Penalties<T>& penalties_;
   const int paths_;
@@ -156,7 +170,7 @@ void check(const CostVolume& volume, const SemiGlobalParams& params) {
 }  // namespace
 
 struct SemiGlobal::Workspace {
-  std::vector<std::uint16_t> sums;  // H x W x stride
+  std::vector<std::uint16_t> sums;  // rows x W x stride
   cv::Mat grey;                     // of colour images that have no 8-bit grey
   std::array<SweepBuffers<std::uint8_t>, 2> sweeps8;
   std::array<SweepBuffers<std::uint16_t>, 2> sweeps16;
@@ -167,26 +181,28 @@ struct SemiGlobal::Workspace {
                    DisparitySelection(params.subpixel, params.uniqueness_ratio)} {}
 
   template <typename T>
-  void optimize(const OptimizerInput& input, const SemiGlobalParams& params, std::array<SweepBuffers<T>, 2>& buffers,
-                OptimizerOutput& output);
+  void optimize(const OptimizerInput& input, const SemiGlobalParams& params, int row_step,
+                std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output);
 };
 
 /// Both sweeps start at their end of the image and store sums up to the middle; then each goes on over the rows of
 /// the other, adds to its sums and decides. Two threads share the work without a lock, and the result does not depend
 /// on whether there are two.
 template <typename T>
-void SemiGlobal::Workspace::optimize(const OptimizerInput& input, const SemiGlobalParams& params,
+void SemiGlobal::Workspace::optimize(const OptimizerInput& input, const SemiGlobalParams& params, int row_step,
                                      std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output) {
   const CostVolume& volume = input.volume;
   const Penalties<T> penalties = makePenalties<T>(params, volume.step());
   const cv::Mat& guide = eightBitGrey(input.pair.left, input.pair.left_grey, grey);
-  const int height = volume.height();
-  const int middle = height / 2;
+  const RowGrid rows(volume.height(), row_step);
+  const int middle = rows.count / 2;
   const std::size_t row_sums = static_cast<std::size_t>(volume.width()) * volume.stride();
-  if (sums.size() < row_sums * height) sums.resize(row_sums * height);
-  std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, guide, penalties, params.paths, false, buffers[0]),
-                                    Sweep<T>(volume, guide, penalties, params.paths, true, buffers[1])};
-  const int first[2] = {0, height - 1}, beyond[2] = {height, -1}, turn[2] = {middle, middle - 1}, step[2] = {1, -1};
+  if (sums.size() < row_sums * rows.count) sums.resize(row_sums * rows.count);
+  DisparitySelection::createMaps(rows.count, volume.width(), output);
+  std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, rows, guide, penalties, params.paths, false, buffers[0]),
+                                    Sweep<T>(volume, rows, guide, penalties, params.paths, true, buffers[1])};
+  const int first[2] = {0, rows.count - 1}, beyond[2] = {rows.count, -1}, turn[2] = {middle, middle - 1};
+  const int step[2] = {1, -1};
 #pragma omp parallel num_threads(std::min(2, omp_get_max_threads()))
   {
 #pragma omp for schedule(static, 1)
@@ -208,13 +224,20 @@ SemiGlobal::SemiGlobal(const SemiGlobalParams& params)
 SemiGlobal::~SemiGlobal() = default;
 
 void SemiGlobal::optimize(const OptimizerInput& input, OptimizerOutput& output) {
+  optimizeRows(input, params_.paths, 1, output);
+}
+
+void SemiGlobal::optimizeRows(const OptimizerInput& input, int paths, int row_step, OptimizerOutput& output) {
   check(input.volume, params_);
-  DisparitySelection::createMaps(input.volume.height(), input.volume.width(), output);
+  SemiGlobalParams params = params_;
+  params.paths = paths;
   if (input.volume.depth() == CostVolume::Depth::kU8) {
-    workspace_->optimize(input, params_, workspace_->sweeps8, output);
+    workspace_->optimize(input, params, row_step, workspace_->sweeps8, output);
   } else {
-    workspace_->optimize(input, params_, workspace_->sweeps16, output);
+    workspace_->optimize(input, params, row_step, workspace_->sweeps16, output);
   }
 }
+
+int SemiGlobal::firstRow(int height, int row_step) { return RowGrid(height, row_step).imageRow(0); }
 
 }  // namespace fdp_stereo

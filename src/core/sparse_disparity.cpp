@@ -145,10 +145,13 @@ cv::Mat drawSeeds(const cv::Mat& left, const SparseDisparity& sparse, DisparityR
   for (const Seed& seed : sparse.rejected) {
     cv::drawMarker(picture, {cvRound(seed.x), cvRound(seed.y)}, {230, 230, 230}, cv::MARKER_TILTED_CROSS, 5, 1);
   }
+  const auto discs = std::count_if(sparse.seeds.begin(), sparse.seeds.end(),
+                                   [](const Seed& seed) { return seed.source != SeedSource::kQuasiDense; });
   for (std::size_t i = 0; i < sparse.seeds.size(); ++i) {
     const cv::Point at(cvRound(sparse.seeds[i].x), cvRound(sparse.seeds[i].y));
     const cv::Scalar colour = colours.at<cv::Vec3b>(static_cast<int>(i));
-    cv::circle(picture, at, sparse.seeds.size() < 3000 ? 2 : 1, colour, cv::FILLED, cv::LINE_AA);
+    const bool dot = sparse.seeds[i].source == SeedSource::kQuasiDense;
+    cv::circle(picture, at, dot ? 0 : (discs < 3000 ? 2 : 1), colour, cv::FILLED, dot ? cv::LINE_8 : cv::LINE_AA);
   }
   return picture;
 }

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <opencv2/imgproc.hpp>
 
 #include "kernels/propagation_kernels.hpp"
@@ -21,10 +21,15 @@ constexpr int kRounds = 2;
 constexpr float kFar = 1e9F;
 constexpr int kCellPx = 2;  // ways are sought on cells of this size
 constexpr int kMaxNeighbours = 12;
-constexpr int kPhases = 8;           // of the prior between two disparities
-constexpr float kFarthest = 4.0F;    // way beyond which a seed has no say
-constexpr float kMaxSlope = 1.0F;    // px / px
-constexpr float kFitScalePx = 0.5F;  // residual at which a neighbour counts a quarter in the plane fit
+constexpr int kPhases = 8;         // of the prior between two disparities
+constexpr float kFarthest = 4.0F;  // way beyond which a seed has no say
+constexpr float kMaxSlope = 1.0F;  // px / px
+// Residual at which a neighbour counts a quarter in the plane fit: large at first, so that a steep surface is found,
+// and halved from round to round.
+constexpr float kFirstFitScalePx = 4.0F;
+constexpr float kLastFitScalePx = 0.5F;
+constexpr int kFitRounds = 6;
+constexpr double kLevelWeight = 0.5F;  // of a level plane, where the neighbours say little
 
 /// Mean over the channels of |a - b|.
 float colourStep(const uchar* a, const uchar* b, int channels) {
@@ -50,11 +55,11 @@ cv::Mat stepCosts(const cv::Mat& left, int dx, int dy, double gamma, double reac
   return costs;
 }
 
-void sweepRows(GeodesicMap& map, const cv::Mat& steps) {
+void sweepRows(GeodesicMap& map) {
   for (int y = 0; y < map.distance.rows; ++y) {
     auto* distance = map.distance.ptr<float>(y);
     auto* owner = map.owner.ptr<std::int32_t>(y);
-    const auto* step = steps.ptr<float>(y);
+    const auto* step = map.across.ptr<float>(y);
     const auto relax = [&](int to, int from, float cost) {
       if (distance[from] + cost < distance[to]) {
         distance[to] = distance[from] + cost;
@@ -66,10 +71,10 @@ void sweepRows(GeodesicMap& map, const cv::Mat& steps) {
   }
 }
 
-void sweepColumns(GeodesicMap& map, const cv::Mat& steps) {
+void sweepColumns(GeodesicMap& map) {
   const PropagationKernels& kernels = FDP_STEREO_SELECT(propagationKernels);
   const auto relax = [&](int to, int from, int step) {
-    kernels.relaxRow(map.distance.ptr<float>(from), map.owner.ptr<std::int32_t>(from), steps.ptr<float>(step),
+    kernels.relaxRow(map.distance.ptr<float>(from), map.owner.ptr<std::int32_t>(from), map.down.ptr<float>(step),
                      map.distance.cols, map.distance.ptr<float>(to), map.owner.ptr<std::int32_t>(to));
   };
   for (int y = 1; y < map.distance.rows; ++y) relax(y, y - 1, y - 1);
@@ -121,10 +126,12 @@ std::vector<Neighbours> findNeighbours(std::size_t seeds, const GeodesicMap& map
     const auto* owner_below = map.owner.ptr<std::int32_t>(below);
     const auto* distance = map.distance.ptr<float>(y);
     const auto* distance_below = map.distance.ptr<float>(below);
+    const auto* across = map.across.ptr<float>(y);
+    const auto* down = map.down.ptr<float>(y);
     for (int x = 0; x < map.owner.cols; ++x) {
       const int right = std::min(x + 1, map.owner.cols - 1);
-      if (owner[x] != owner[right]) meet(owner[x], owner[right], distance[x] + distance[right]);
-      if (owner[x] != owner_below[x]) meet(owner[x], owner_below[x], distance[x] + distance_below[x]);
+      if (owner[x] != owner[right]) meet(owner[x], owner[right], distance[x] + across[x] + distance[right]);
+      if (owner[x] != owner_below[x]) meet(owner[x], owner_below[x], distance[x] + down[x] + distance_below[x]);
     }
   }
   return neighbours;
@@ -132,20 +139,30 @@ std::vector<Neighbours> findNeighbours(std::size_t seeds, const GeodesicMap& map
 
 SeedPlane fitPlane(const Seeds& seeds, int index, const Neighbours& neighbours) {
   const Seed& centre = seeds[index];
+  std::array<Eigen::Vector3f, kMaxNeighbours> positions;
+  std::array<float, kMaxNeighbours> nearness;
+  std::array<float, kMaxNeighbours> disparities;
+  int count = 0;
+  for (const auto& [other, way] : neighbours) {
+    const Seed& seed = seeds[other];
+    positions[count] = {1.0F, seed.x - centre.x, seed.y - centre.y};
+    nearness[count] = std::exp(-0.5F * way);
+    disparities[count++] = seed.d;
+  }
   Eigen::Vector3f plane(centre.d, 0.0F, 0.0F);
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    Eigen::Matrix3f normal = Eigen::Vector3f(1.0F, 20.0F, 20.0F).asDiagonal();  // the seed itself; level when in doubt
+  float scale = kFirstFitScalePx;
+  for (int round = 0; round < kFitRounds; ++round) {
+    Eigen::Matrix3d normal = Eigen::Vector3d(1.0, kLevelWeight, kLevelWeight).asDiagonal();  // 1: the seed itself
     Eigen::Vector3f right_side(centre.d, 0.0F, 0.0F);
-    for (const auto& [other, way] : neighbours) {
-      const Seed& seed = seeds[other];
-      const Eigen::Vector3f basis(1.0F, seed.x - centre.x, seed.y - centre.y);
-      const float residual = seed.d - basis.dot(plane);
-      const float root = 1.0F + residual * residual / (4.0F * kFitScalePx * kFitScalePx);
-      const float weight = std::exp(-0.5F * way) / (root * root);
-      normal += weight * basis * basis.transpose();
-      right_side += weight * seed.d * basis;
+    for (int i = 0; i < count; ++i) {
+      const float residual = disparities[i] - positions[i].dot(plane);
+      const float root = 1.0F + residual * residual / (4.0F * scale * scale);
+      const Eigen::Vector3f weighted = nearness[i] / (root * root) * positions[i];
+      normal += (weighted * positions[i].transpose()).cast<double>();
+      right_side += disparities[i] * weighted;
     }
-    plane = normal.ldlt().solve(right_side);
+    plane = (normal.inverse() * right_side.cast<double>()).cast<float>();
+    scale = std::max(kLastFitScalePx, scale / 2.0F);
   }
   SeedPlane result;
   result.d0 = plane(0);
@@ -169,7 +186,7 @@ class PriorTable {
   }
   /// First entry for a surface at index `at` (0 .. count - 1) of the range.
   const T* at(float at) const {
-    const int position = static_cast<int>(std::lround(at * kPhases));
+    const int position = static_cast<int>(at * kPhases + 0.5F);
     return values_.data() + static_cast<std::size_t>(position % kPhases) * length_ + centre_ - position / kPhases;
   }
 
@@ -185,6 +202,7 @@ using Blend = void (*)(const T*, int, int, T*);
 /// The say of its seed in each cell, 0..255.
 cv::Mat sharesOf(const GeodesicMap& map, double strength) {
   cv::Mat shares(map.distance.size(), CV_8UC1);
+#pragma omp parallel for schedule(static)
   for (int y = 0; y < shares.rows; ++y) {
     const auto* distance = map.distance.ptr<float>(y);
     for (int x = 0; x < shares.cols; ++x) {
@@ -197,10 +215,10 @@ cv::Mat sharesOf(const GeodesicMap& map, double strength) {
 
 template <typename T>
 double blendSurfaces(const Seeds& seeds, const GeodesicMap& map, const DisparityPropagationParams& params,
-                     Blend<T> blend, CostVolume& volume) {
+                     DisparityAxis axis, Blend<T> blend, CostVolume& volume) {
   const std::vector<SeedPlane> planes = fitPlanes(seeds, map);
   const cv::Mat shares = sharesOf(map, params.strength);
-  const PriorTable<T> table(volume.range().count, volume.maxRaw(), params.spread_px);
+  const PriorTable<T> table(volume.range().count, volume.maxRaw(), params.spread_px * axis.steps);
   const auto last = static_cast<float>(volume.range().count - 1);
   long changed = 0;
 #pragma omp parallel for schedule(static) reduction(+ : changed)
@@ -210,8 +228,9 @@ double blendSurfaces(const Seeds& seeds, const GeodesicMap& map, const Disparity
     for (int x = 0; x < volume.width(); ++x) {
       const int cell = x / kCellPx;
       if (share[cell] == 0) continue;
-      const float d = planes[owner[cell]].at(seeds[owner[cell]], x, y) - static_cast<float>(volume.range().min);
-      blend(table.at(std::clamp(d, 0.0F, last)), share[cell], volume.range().count, volume.at<T>(y, x));
+      const float d = planes[owner[cell]].at(seeds[owner[cell]], x, y);
+      const float at = (d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
+      blend(table.at(std::clamp(at, 0.0F, last)), share[cell], volume.range().count, volume.at<T>(y, x));
       ++changed;
     }
   }
@@ -236,11 +255,11 @@ GeodesicMap spreadSeeds(const Seeds& seeds, const cv::Mat& left, double gamma, d
     map.distance.at<float>(y / kCellPx, x / kCellPx) = start;
     map.owner.at<std::int32_t>(y / kCellPx, x / kCellPx) = i;
   }
-  const cv::Mat across = stepCosts(cells, 1, 0, gamma, reach_px / kCellPx);
-  const cv::Mat down = stepCosts(cells, 0, 1, gamma, reach_px / kCellPx);
+  map.across = stepCosts(cells, 1, 0, gamma, reach_px / kCellPx);
+  map.down = stepCosts(cells, 0, 1, gamma, reach_px / kCellPx);
   for (int round = 0; round < kRounds; ++round) {
-    sweepColumns(map, down);
-    sweepRows(map, across);
+    sweepColumns(map);
+    sweepRows(map);
   }
   return map;
 }
@@ -248,17 +267,18 @@ GeodesicMap spreadSeeds(const Seeds& seeds, const cv::Mat& left, double gamma, d
 std::vector<SeedPlane> fitPlanes(const Seeds& seeds, const GeodesicMap& map) {
   const std::vector<Neighbours> neighbours = findNeighbours(seeds.size(), map);
   std::vector<SeedPlane> planes(seeds.size());
+#pragma omp parallel for schedule(static)
   for (int i = 0; i < static_cast<int>(seeds.size()); ++i) planes[i] = fitPlane(seeds, i, neighbours[i]);
   return planes;
 }
 
 double propagateSurfaces(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
-                         CostVolume& volume) {
+                         DisparityAxis axis, CostVolume& volume) {
   const GeodesicMap map = spreadSeeds(seeds, left, params.gamma, params.reach_px);
   const PropagationKernels& kernels = FDP_STEREO_SELECT(propagationKernels);
   return volume.depth() == CostVolume::Depth::kU8
-             ? blendSurfaces<std::uint8_t>(seeds, map, params, kernels.blend8, volume)
-             : blendSurfaces<std::uint16_t>(seeds, map, params, kernels.blend16, volume);
+             ? blendSurfaces<std::uint8_t>(seeds, map, params, axis, kernels.blend8, volume)
+             : blendSurfaces<std::uint16_t>(seeds, map, params, axis, kernels.blend16, volume);
 }
 
 }  // namespace fdp_stereo

@@ -15,6 +15,8 @@ namespace fdp_stereo {
 struct GeodesicMap {
   cv::Mat distance;  ///< CV_32FC1, -log(trust of the seed) + length of the way
   cv::Mat owner;     ///< CV_32SC1, index of the seed; -1 where there is none
+  cv::Mat across;    ///< CV_32FC1, cost of the step to the right neighbour
+  cv::Mat down;      ///< CV_32FC1, to the lower one
 };
 
 /// A way costs 1 / reach_px per pixel and |dI|_1 / gamma (mean over the channels) per step (eq. 11's exponent along a
@@ -35,6 +37,6 @@ std::vector<SeedPlane> fitPlanes(const Seeds& seeds, const GeodesicMap& map);
 
 /// The surface form of propagateDisparity().
 double propagateSurfaces(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
-                         CostVolume& volume);
+                         DisparityAxis axis, CostVolume& volume);
 
 }  // namespace fdp_stereo

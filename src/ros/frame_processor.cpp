@@ -110,7 +110,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);
   if (wanted.seeds) {
-    const cv::Mat drawn = drawSeeds(toEightBit(pair.left), {result.seeds, result.rejected_seeds}, range);
+    const cv::Mat drawn = drawSeeds(toEightBit(pair.left), allSeeds(result), range);
     output.seeds = toImageMessage(drawn, header);
   }
   if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
@@ -118,6 +118,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   output.report.propagated_share = result.propagated_share;
   output.report.seeds = result.seeds.size();
   output.report.rejected_seeds = result.rejected_seeds.size();
+  output.report.quasi_dense_seeds = result.quasi_dense_seeds.size();
   output.report.row_offset_px = result.row_alignment.offset_rms_px;
   output.report.valid_share = validShare(result.disparity);
   return output;

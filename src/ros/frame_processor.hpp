@@ -37,6 +37,7 @@ struct FrameReport {
   std::size_t external_seeds = 0;  ///< of other sensors, as given to the pipeline
   std::size_t seeds = 0;
   std::size_t rejected_seeds = 0;
+  std::size_t quasi_dense_seeds = 0;
   double propagated_share = 0.0;  ///< of the pixels whose costs the seeds changed
   double row_offset_px = 0.0;     ///< RMS over the image
   double valid_share = 0.0;       ///< of the pixels

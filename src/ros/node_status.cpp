@@ -117,6 +117,7 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.add("Seeds of other sensors", now.frame.external_seeds);
   diagnostics.add("Seeds", now.frame.seeds);
   diagnostics.add("Seeds rejected", now.frame.rejected_seeds);
+  diagnostics.add("Seeds of the first matching", now.frame.quasi_dense_seeds);
   diagnostics.addf("Pixels influenced by seeds (%)", "%.1f", 100.0 * now.frame.propagated_share);
   diagnostics.addf("Row offset (px)", "%.2f", now.frame.row_offset_px);
   diagnostics.addf("Valid pixels (%)", "%.1f", 100.0 * now.frame.valid_share);

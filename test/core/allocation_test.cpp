@@ -81,7 +81,7 @@ struct Stages {
   void run(const StereoPair& pair, const Seeds& seeds) {
     matching_cost.compute(pair, params.search, params.matching_cost, step, volume);
     propagateDisparity(seeds, pair.left, params.disparity_propagation, volume);
-    optimizer.optimize({volume, pair, seeds, nullptr, &params.matching_cost, {}}, output);
+    optimizer.optimize({volume, pair, seeds, nullptr, &params.matching_cost, {}, {}}, output);
   }
 };
 

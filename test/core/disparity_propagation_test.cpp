@@ -297,6 +297,36 @@ TEST(SurfacePropagation, ThreadsAndInstructionSetsAgree) {
   limitSimdLevel(SimdLevel::kAvx512);
 }
 
+// Rows of seeds on a floor: the steps from row to row are larger than the scatter that the fit forgives at the end.
+TEST(SurfacePropagation, FindsSteepPlanes) {
+  const cv::Mat left(80, 80, CV_8UC1, cv::Scalar(60));
+  Seeds seeds;
+  for (int y = 4; y < 80; y += 8) {
+    for (int x = 4; x < 80; x += 8) {
+      seeds.push_back(seedAt(static_cast<float>(x), static_cast<float>(y), 5.0F + 0.8F * static_cast<float>(y)));
+    }
+  }
+  const std::vector<SeedPlane> planes = fitPlanes(seeds, spreadSeeds(seeds, left, 10.0, 30.0));
+  for (const SeedPlane& plane : planes) {
+    EXPECT_NEAR(plane.slope(0), 0.0, 0.02);
+    EXPECT_NEAR(plane.slope(1), 0.8, 0.02);
+  }
+}
+
+// Entry i of such a volume is disparity -2 + i / 4.
+TEST(SurfacePropagation, TakesVolumesWithFractionsOfAPixel) {
+  const cv::Mat left(20, 20, CV_8UC1, cv::Scalar(60));
+  const Seeds seeds = {seedAt(10, 10, 3.25F)};
+  CostVolume volume = constantVolume(left.size(), {0, 41}, CostVolume::Depth::kU16, 100);
+  propagateDisparity(seeds, left, surfaceParams(), {-2, 4}, volume);
+  EXPECT_NEAR(minimum(volume, 10, 10), 4.0 * (3.25 + 2.0), 0.5);
+  EXPECT_NEAR(volume.raw(10, 10, 0), volume.raw(10, 10, 40), 2) << "far from the surface, all are alike";
+  CostVolume window = constantVolume(left.size(), {0, 41}, CostVolume::Depth::kU8, 100);
+  propagateDisparity(seeds, left, windowParams(3, 10.0), {-2, 4}, window);
+  EXPECT_EQ(window.raw(10, 10, 21), 0);
+  EXPECT_EQ(window.raw(10, 10, 20), 100);
+}
+
 TEST(SurfacePropagation, OddInput) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 1), cv::Size(1, 9)}) {
     const cv::Mat left(size, CV_8UC1, cv::Scalar(60));

@@ -65,7 +65,7 @@ struct Scene {
     const double headroom = SemiGlobal(SemiGlobalParams{}).costHeadroom();
     computeMatchingCost(pair, kRange, cost, static_cast<float>((maxMatchingCost(cost) + headroom) / 252.0), volume);
   }
-  OptimizerInput input() const { return {volume, pair, seeds, nullptr, &cost, {}}; }
+  OptimizerInput input() const { return {volume, pair, seeds, nullptr, &cost, {}, {}}; }
 };
 
 LocalExpansionParams testParams() {

@@ -31,7 +31,7 @@ OptimizerOutput optimize(const CostVolume& volume, const cv::Mat& left, const Se
   pair.left = left;
   const Seeds seeds;
   OptimizerOutput output;
-  SemiGlobal(params).optimize({volume, pair, seeds, nullptr, nullptr, nullptr}, output);
+  SemiGlobal(params).optimize({volume, pair, seeds, nullptr, nullptr, nullptr, {}}, output);
   return output;
 }
 

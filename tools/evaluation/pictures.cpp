@@ -53,9 +53,9 @@ void writeMethodPictures(const std::string& folder, const Scene& scene, const st
   write(folder, pictureName(scene.name, method, "disparity"), colorize(disparity, {0, scene.num_disparities}));
   write(folder, pictureName(scene.name, method, "errors"), colorizeErrors(disparity, scene.truth, scene.mask));
   write(folder, pictureName(scene.name, method, "invalid"), markInvalid(scene.left, disparity));
-  if (!result.seeds.empty()) {
-    const cv::Mat picture =
-        drawSeeds(displayImage(scene.left), {result.seeds, result.rejected_seeds}, {0, scene.num_disparities});
+  const SparseDisparity seeds = allSeeds(result);
+  if (!seeds.seeds.empty()) {
+    const cv::Mat picture = drawSeeds(displayImage(scene.left), seeds, {0, scene.num_disparities});
     write(folder, pictureName(scene.name, method, "seeds"), picture);
   }
 }

@@ -114,6 +114,8 @@ const std::vector<Column>& resultColumns() {
       FDP_STEREO_COLUMN("memory_mb", "MB", Better::kSmaller, memory_mb),
       FDP_STEREO_COLUMN("seeds", "seeds", Better::kNeither, seeds),
       FDP_STEREO_COLUMN("seeds_wrong", "wrong %", Better::kSmaller, seeds_wrong),
+      FDP_STEREO_COLUMN("quasi_dense", "dense", Better::kNeither, dense),
+      FDP_STEREO_COLUMN("quasi_dense_wrong", "wrong %", Better::kSmaller, dense_wrong),
       FDP_STEREO_COLUMN("rows_before_px", "rows px", Better::kNeither, rows_before_px),
       FDP_STEREO_COLUMN("rows_after_px", "after px", Better::kNeither, rows_after_px),
   };

@@ -23,6 +23,8 @@ struct ResultRow {
   double memory_mb = kUnknown;       ///< peak above what was in use before; unknown likewise
   double seeds = kUnknown;           ///< number of seeds
   double seeds_wrong = kUnknown;     ///< % of the seeds with a truth that are off by more than 1 px
+  double dense = kUnknown;           ///< number of seeds of the first, rough matching
+  double dense_wrong = kUnknown;     ///< % of them, likewise
   double rows_before_px = kUnknown;  ///< robust RMS of the matches' row residuals as given
   double rows_after_px = kUnknown;   ///< and after row alignment
 };

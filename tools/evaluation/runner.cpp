@@ -178,6 +178,10 @@ class Runner {
   static void addDiagnostics(const PipelineResult& result, const Scene& scene, ResultRow& row) {
     row.seeds = static_cast<double>(result.seeds.size());
     row.seeds_wrong = wrongSeeds(result.seeds, scene.truth);
+    if (!result.quasi_dense_seeds.empty()) {
+      row.dense = static_cast<double>(result.quasi_dense_seeds.size());
+      row.dense_wrong = wrongSeeds(result.quasi_dense_seeds, scene.truth);
+    }
     if (result.row_alignment.matches_used == 0) return;
     row.rows_before_px = result.row_alignment.rms_before_px;
     row.rows_after_px = result.row_alignment.rms_after_px;

@@ -42,19 +42,33 @@ void collectWindow(const cv::Mat& image, const Labels& labels, cv::Point p, int 
   }
 }
 
+double weightOf(std::vector<WeightedPixel>::const_iterator first, std::vector<WeightedPixel>::const_iterator last) {
+  double sum = 0.0;
+  for (; first != last; ++first) sum += static_cast<double>(first->weight);
+  return sum;
+}
+
+// Halves what may hold the median until one pixel is left.
 Plane medianOf(std::vector<WeightedPixel>& window, const Labels& labels) {
-  std::sort(window.begin(), window.end(), [](const WeightedPixel& a, const WeightedPixel& b) {
+  const auto before = [](const WeightedPixel& a, const WeightedPixel& b) {
     if (a.d != b.d) return a.d < b.d;
     return a.y != b.y ? a.y < b.y : a.x < b.x;
-  });
-  double total = 0.0;
-  for (const WeightedPixel& pixel : window) total += static_cast<double>(pixel.weight);
-  double sum = 0.0;
-  for (const WeightedPixel& pixel : window) {
-    sum += static_cast<double>(pixel.weight);
-    if (2.0 * sum >= total) return labels.plane(pixel.x, pixel.y);
+  };
+  const double half = 0.5 * weightOf(window.begin(), window.end());
+  auto first = window.begin(), last = window.end();
+  double below = 0.0;
+  while (last - first > 1) {
+    const auto middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last, before);
+    const double weight = weightOf(first, middle);
+    if (below + weight >= half) {
+      last = middle;
+    } else {
+      below += weight;
+      first = middle;
+    }
   }
-  return labels.plane(window.back().x, window.back().y);
+  return labels.plane(first->x, first->y);
 }
 
 void fillRow(const cv::Mat& consistent, const cv::Mat& donors, int y, const Labels& before, Labels& labels) {

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "fdp_stereo/cost_volume.hpp"
+#include "fdp_stereo/disparity_propagation.hpp"
+#include "fdp_stereo/semi_global.hpp"
+#include "fdp_stereo/types.hpp"
+
+namespace fdp_stereo {
+
+/// Seeds from a first, rough matching of the pair, and how they are spread. They lie wherever there is texture, not at
+/// corners alone, so that their surfaces reach into the places that have none.
+struct QuasiDenseParams {
+  bool enabled = false;
+  int row_step = 3;     ///< every row_step-th row is matched, >= 1
+  int spacing_px = 6;   ///< at most one seed per square of this side, >= 1
+  double gamma = 20.0;  ///< as DisparityPropagationParams::gamma, of the surface form
+  double reach_px = 250.0;
+  double strength = 0.05;
+  double spread_px = 2.0;
+};
+
+/// What spreads the seeds: the surface form of stage 6.
+DisparityPropagationParams surfacesOf(const QuasiDenseParams& params);
+
+/// Semi-global matching along 4 paths over some rows of the volume; disparities that pass a left-right check and lie in
+/// no speckle become seeds, each the median of the 7 pixels of its row around it. Sorted by (y, x), source
+/// kQuasiDense. Throws std::invalid_argument where semi_global does.
+Seeds quasiDenseSeeds(const CostVolume& volume, const StereoPair& pair, const QuasiDenseParams& params,
+                      SemiGlobal& semi_global);
+
+}  // namespace fdp_stereo
