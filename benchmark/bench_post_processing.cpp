@@ -17,7 +17,7 @@ const OptimizerOutput& optimized() {
     computeMatchingCost(benchmarkPair(), params.search, params.matching_cost, step, volume);
     OptimizerOutput result;
     const Seeds seeds;
-    optimizer.optimize({volume, benchmarkPair(), seeds, nullptr, &params.matching_cost, {}}, result);
+    optimizer.optimize({volume, benchmarkPair(), seeds, nullptr, &params.matching_cost, {}, {}}, result);
     return result;
   }();
   return output;

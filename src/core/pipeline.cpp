@@ -87,7 +87,11 @@ float costStep(const PipelineParams& params, const Optimizer& optimizer) {
 void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::Size size, DisparityRange search) {
   const double pixels = static_cast<double>(size.width) * size.height;
   const double cells = pixels * (search.count + CostVolume::kPadding);
-  const double mb = cells * (params.matching_cost.bits / 8.0 + optimizer.bytesPerCost()) / 1e6;
+  double beside = optimizer.bytesPerCost();
+  if (wantsQuasiDense(params)) {
+    beside = std::max(beside, SemiGlobal(params.semi_global).bytesPerCost() / params.quasi_dense.row_step);
+  }
+  const double mb = cells * (params.matching_cost.bits / 8.0 + beside) / 1e6;
   if (mb <= params.max_memory_mb) return;
   throw std::invalid_argument(
       "a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +

@@ -197,7 +197,10 @@ void SemiGlobal::Workspace::optimize(const OptimizerInput& input, const SemiGlob
   const RowGrid rows(volume.height(), row_step);
   const int middle = rows.count / 2;
   const std::size_t row_sums = static_cast<std::size_t>(volume.width()) * volume.stride();
-  if (sums.size() < row_sums * rows.count) sums.resize(row_sums * rows.count);
+  if (sums.size() < row_sums * rows.count) {
+    sums = std::vector<std::uint16_t>();  // first, so that the old ones do not lie beside the new ones
+    sums.resize(row_sums * rows.count);
+  }
   DisparitySelection::createMaps(rows.count, volume.width(), output);
   std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, rows, guide, penalties, params.paths, false, buffers[0]),
                                     Sweep<T>(volume, rows, guide, penalties, params.paths, true, buffers[1])};

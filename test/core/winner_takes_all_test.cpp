@@ -18,7 +18,7 @@ OptimizerOutput winners(const CostVolume& volume, const WinnerTakesAllParams& pa
   const StereoPair pair;
   const Seeds seeds;
   OptimizerOutput output;
-  WinnerTakesAll(params).optimize({volume, pair, seeds, nullptr, nullptr, nullptr}, output);
+  WinnerTakesAll(params).optimize({volume, pair, seeds, nullptr, nullptr, nullptr, {}}, output);
   return output;
 }
 
