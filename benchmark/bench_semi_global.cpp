@@ -11,7 +11,8 @@ CostVolume benchmarkVolume(const PipelineParams& params, const SemiGlobal& semi_
   const double steps = params.matching_cost.bits == 8 ? 252.0 : 8188.0;
   const double largest = maxMatchingCost(params.matching_cost) + semi_global.costHeadroom();
   CostVolume volume;
-  computeMatchingCost(benchmarkPair(), params.search, params.matching_cost, static_cast<float>(largest / steps), volume);
+  computeMatchingCost(benchmarkPair(), params.search, params.matching_cost, static_cast<float>(largest / steps),
+                      volume);
   return volume;
 }
 
