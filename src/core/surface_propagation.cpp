@@ -186,7 +186,7 @@ class PriorTable {
   }
   /// First entry for a surface at index `at` (0 .. count - 1) of the range.
   const T* at(float at) const {
-    const int position = static_cast<int>(at * kPhases + 0.5F);
+    const int position = cvRound(at * kPhases);
     return values_.data() + static_cast<std::size_t>(position % kPhases) * length_ + centre_ - position / kPhases;
   }
 
