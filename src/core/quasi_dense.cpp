@@ -18,6 +18,11 @@ constexpr int kMedianRadiusPx = 3;
 constexpr double kMaxDifferencePx = 1.0;  // between the views, and between neighbours of one region
 constexpr int kSpecklePx = 60;            // of the image: a row that is matched stands for row_step rows
 
+// A seed reaches far, so one that is alone is not believed: of the 8 around it, so many must differ by no more than
+// this.
+constexpr int kMinAgreeing = 2;
+constexpr float kMaxStepPx = 2.0F;
+
 /// Median of the known disparities among those of the row around x; NaN where there are none.
 float medianAround(const float* row, int width, int x) {
   std::array<float, 2 * kMedianRadiusPx + 1> known{};
@@ -27,6 +32,38 @@ float medianAround(const float* row, int width, int x) {
   const auto middle = known.begin() + std::distance(known.begin(), end) / 2;
   std::nth_element(known.begin(), middle, end);
   return *middle;
+}
+
+int rowsPerSeed(const QuasiDenseParams& params) { return std::max(1, params.spacing_px / params.row_step); }
+
+/// The first of samples that lie `spacing` apart, inside `size`.
+int firstOf(int spacing, int size) { return std::min(spacing / 2, size - 1); }
+
+/// What becomes seeds: CV_32FC1, NaN = none.
+cv::Mat sampleGrid(const cv::Mat& map, const QuasiDenseParams& params) {
+  const int rows_per_seed = rowsPerSeed(params);
+  const int first_row = firstOf(rows_per_seed, map.rows), first_x = firstOf(params.spacing_px, map.cols);
+  cv::Mat grid((map.rows - 1 - first_row) / rows_per_seed + 1, (map.cols - 1 - first_x) / params.spacing_px + 1,
+               CV_32FC1);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.cols; ++column) {
+      grid.at<float>(row, column) =
+          medianAround(map.ptr<float>(first_row + row * rows_per_seed), map.cols, first_x + column * params.spacing_px);
+    }
+  }
+  return grid;
+}
+
+/// Number of the up to 8 samples around one that are alike.
+int agreeing(const cv::Mat& grid, int row, int column) {
+  const float d = grid.at<float>(row, column);
+  int count = -1;  // itself
+  for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(grid.cols - 1, column + 1); ++c) {
+      count += std::abs(grid.at<float>(r, c) - d) <= kMaxStepPx ? 1 : 0;
+    }
+  }
+  return count;
 }
 
 }  // namespace
@@ -54,18 +91,21 @@ Seeds quasiDenseSeeds(const CostVolume& volume, const StereoPair& pair, const Qu
   speckles.max_difference_px = kMaxDifferencePx;
   filterSpeckles(rough.disparity_left, speckles);
 
-  const cv::Mat& map = rough.disparity_left;
+  const cv::Mat grid = sampleGrid(rough.disparity_left, params);
   const int first_row = SemiGlobal::firstRow(volume.height(), params.row_step);
-  const int rows_per_seed = std::max(1, params.spacing_px / params.row_step);
+  const int rows_per_seed = rowsPerSeed(params);
   Seeds seeds;
-  for (int row = std::min(rows_per_seed / 2, map.rows - 1); row < map.rows; row += rows_per_seed) {
-    for (int x = std::min(params.spacing_px / 2, map.cols - 1); x < map.cols; x += params.spacing_px) {
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.cols; ++column) {
+      const float d = grid.at<float>(row, column);
+      if (std::isnan(d) || agreeing(grid, row, column) < kMinAgreeing) continue;
       Seed seed;
-      seed.x = static_cast<float>(x);
-      seed.y = static_cast<float>(first_row + row * params.row_step);
-      seed.d = medianAround(map.ptr<float>(row), map.cols, x);
+      seed.x = static_cast<float>(firstOf(params.spacing_px, volume.width()) + column * params.spacing_px);
+      seed.y = static_cast<float>(
+          first_row + (firstOf(rows_per_seed, rough.disparity_left.rows) + row * rows_per_seed) * params.row_step);
+      seed.d = d;
       seed.source = SeedSource::kQuasiDense;
-      if (!std::isnan(seed.d)) seeds.push_back(seed);
+      seeds.push_back(seed);
     }
   }
   return seeds;
