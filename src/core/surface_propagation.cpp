@@ -44,6 +44,7 @@ cv::Mat stepCosts(const cv::Mat& left, int dx, int dy, double gamma, double reac
   const auto per_px = static_cast<float>(1.0 / reach_px);
   const auto per_level = static_cast<float>(1.0 / gamma);
   cv::Mat costs(left.size(), CV_32FC1, cv::Scalar(0));
+#pragma omp parallel for schedule(static)
   for (int y = 0; y < left.rows - dy; ++y) {
     const uchar* here = left.ptr<uchar>(y);
     const uchar* there = left.ptr<uchar>(y + dy) + channels * dx;
@@ -138,35 +139,34 @@ std::vector<Neighbours> findNeighbours(std::size_t seeds, const GeodesicMap& map
 }
 
 SeedPlane fitPlane(const Seeds& seeds, int index, const Neighbours& neighbours) {
+  using Values = Eigen::Array<float, kMaxNeighbours, 1>;
   const Seed& centre = seeds[index];
-  std::array<Eigen::Vector3f, kMaxNeighbours> positions;
-  std::array<float, kMaxNeighbours> nearness;
-  std::array<float, kMaxNeighbours> disparities;
+  Values x = Values::Zero(), y = Values::Zero(), d = Values::Zero(), nearness = Values::Zero();  // relative to the seed
   int count = 0;
   for (const auto& [other, way] : neighbours) {
     const Seed& seed = seeds[other];
-    positions[count] = {1.0F, seed.x - centre.x, seed.y - centre.y};
-    nearness[count] = std::exp(-0.5F * way);
-    disparities[count++] = seed.d;
+    x(count) = seed.x - centre.x;
+    y(count) = seed.y - centre.y;
+    d(count) = seed.d - centre.d;
+    nearness(count++) = std::exp(-0.5F * way);
   }
-  Eigen::Vector3f plane(centre.d, 0.0F, 0.0F);
+  Eigen::Vector3d plane(0.0, 0.0, 0.0);
   float scale = kFirstFitScalePx;
   for (int round = 0; round < kFitRounds; ++round) {
-    Eigen::Matrix3d normal = Eigen::Vector3d(1.0, kLevelWeight, kLevelWeight).asDiagonal();  // 1: the seed itself
-    Eigen::Vector3f right_side(centre.d, 0.0F, 0.0F);
-    for (int i = 0; i < count; ++i) {
-      const float residual = disparities[i] - positions[i].dot(plane);
-      const float root = 1.0F + residual * residual / (4.0F * scale * scale);
-      const Eigen::Vector3f weighted = nearness[i] / (root * root) * positions[i];
-      normal += (weighted * positions[i].transpose()).cast<double>();
-      right_side += disparities[i] * weighted;
-    }
-    plane = (normal.inverse() * right_side.cast<double>()).cast<float>();
+    const Eigen::Vector3f now = plane.cast<float>();
+    const Values residual = d - now(0) - now(1) * x - now(2) * y;
+    const Values weight = nearness / (1.0F + residual.square() * (0.25F / (scale * scale))).square();
+    const Values wx = weight * x, wy = weight * y;
+    const double sum_x = wx.sum(), sum_y = wy.sum(), sum_xy = (wx * y).sum();
+    Eigen::Matrix3d normal;
+    normal << 1.0 + weight.sum(), sum_x, sum_y,  // 1: the seed itself
+        sum_x, kLevelWeight + (wx * x).sum(), sum_xy, sum_y, sum_xy, kLevelWeight + (wy * y).sum();
+    plane = normal.inverse() * Eigen::Vector3d((weight * d).sum(), (wx * d).sum(), (wy * d).sum());
     scale = std::max(kLastFitScalePx, scale / 2.0F);
   }
   SeedPlane result;
-  result.d0 = plane(0);
-  result.slope = plane.tail<2>().cwiseMax(-kMaxSlope).cwiseMin(kMaxSlope);
+  result.d0 = centre.d + static_cast<float>(plane(0));
+  result.slope = plane.tail<2>().cast<float>().cwiseMax(-kMaxSlope).cwiseMin(kMaxSlope);
   return result;
 }
 
