@@ -14,7 +14,7 @@ namespace fdp_stereo {
 struct QuasiDenseParams {
   bool enabled = false;
   int row_step = 3;     ///< every row_step-th row is matched, >= 1
-  int spacing_px = 6;   ///< at most one seed per square of this side, >= 1
+  int spacing_px = 6;   ///< from seed to seed along a row, >= 1; between rows rounded down to matched ones
   double gamma = 20.0;  ///< as DisparityPropagationParams::gamma, of the surface form
   double reach_px = 250.0;
   double strength = 0.05;
