@@ -12,7 +12,7 @@
 
 #include "command_line.hpp"
 #include "contest.hpp"
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 #include "fdp_stereo/io.hpp"
 #include "json_writer.hpp"
 

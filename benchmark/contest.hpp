@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fdp_stereo/scene.hpp"
+#include "evaluation/scene.hpp"
 
 namespace fdp_stereo {
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # fdp_stereo_add_kernels(target source...): compiles each kernel source once per instruction set, in a namespace of its
-# own (FDP_STEREO_ISA), and leaves the choice to run time (src/core/simd.hpp). A kernel source includes nothing but
+# own (FDP_STEREO_ISA), and leaves the choice to run time (src/core/simd/simd.hpp). A kernel source includes nothing but
 # <cstdint>-like headers and intrinsics, which are always inlined: any other inline function compiled for AVX2 could be
 # picked by the linker for everybody.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")

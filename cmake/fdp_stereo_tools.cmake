@@ -1,9 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
+# Scenes with known disparity and the errors on them, for tools, benchmarks and tests; no part of what runs on a robot.
+add_library(fdp_stereo_evaluation STATIC src/evaluation/scene.cpp src/evaluation/evaluation.cpp)
+target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_core)
+
 # Command-line tools. With catkin they land in devel/lib/fdp_stereo, where rosrun finds them.
 add_library(fdp_stereo_tool_support STATIC tools/command_line.cpp tools/process_memory.cpp)
-target_link_libraries(fdp_stereo_tool_support PUBLIC fdp_stereo_core CLI11::CLI11)
+target_include_directories(fdp_stereo_tool_support PUBLIC ${PROJECT_SOURCE_DIR}/tools)
+target_link_libraries(fdp_stereo_tool_support PUBLIC fdp_stereo_evaluation CLI11::CLI11)
 
 function(fdp_stereo_add_tool name)
   add_executable(${name} ${ARGN})
@@ -22,25 +28,24 @@ fdp_stereo_add_tool(make_seeds tools/make_seeds.cpp)
 fdp_stereo_add_tool(warp_rows tools/warp_rows.cpp)
 
 find_package(Threads REQUIRED)
-set(_report_template ${PROJECT_SOURCE_DIR}/tools/evaluation/report_template.html)
+set(_report_template ${PROJECT_SOURCE_DIR}/src/evaluation/report_template.html)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_report_template})
 file(READ ${_report_template} FDP_STEREO_REPORT_TEMPLATE)
-configure_file(tools/evaluation/report_template.cpp.in ${PROJECT_BINARY_DIR}/generated/report_template.cpp @ONLY)
+configure_file(src/evaluation/report_template.cpp.in ${PROJECT_BINARY_DIR}/generated/report_template.cpp @ONLY)
 
-add_library(fdp_stereo_evaluation STATIC
-  tools/evaluation/method.cpp
-  tools/evaluation/peer.cpp
-  tools/evaluation/pictures.cpp
-  tools/evaluation/progress.cpp
-  tools/evaluation/report.cpp
-  tools/evaluation/result.cpp
-  tools/evaluation/runner.cpp
+add_library(fdp_stereo_evaluate STATIC
+  src/evaluation/method.cpp
+  src/evaluation/peer.cpp
+  src/evaluation/pictures.cpp
+  src/evaluation/progress.cpp
+  src/evaluation/report.cpp
+  src/evaluation/result.cpp
+  src/evaluation/runner.cpp
   ${PROJECT_BINARY_DIR}/generated/report_template.cpp
 )
-target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/tools)
-target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_tool_support Threads::Threads)
+target_link_libraries(fdp_stereo_evaluate PUBLIC fdp_stereo_tool_support Threads::Threads)
 fdp_stereo_add_tool(evaluate tools/evaluate.cpp)
-target_link_libraries(evaluate PRIVATE fdp_stereo_evaluation)
+target_link_libraries(evaluate PRIVATE fdp_stereo_evaluate)
 
 # docs/parameters.md follows the list of parameters: build update_docs after a change there; a test compares the two.
 add_executable(parameters_doc tools/parameters_doc.cpp)

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 #include "fdp_stereo/pipeline_params.hpp"
 
 namespace fdp_stereo {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 #include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {

@@ -6,7 +6,7 @@
 
 #include "reference/census_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

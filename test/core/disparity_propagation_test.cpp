@@ -13,8 +13,8 @@
 #include <omp.h>
 
 #include "reference/disparity_propagation_reference.hpp"
-#include "simd.hpp"
-#include "surface_propagation.hpp"
+#include "seeds/surface_propagation.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 
 #include <gtest/gtest.h>
 

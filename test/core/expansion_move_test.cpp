@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "local_expansion/expansion_move.hpp"
+#include "optimizers/local_expansion/expansion_move.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "reference/local_expansion_reference.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {

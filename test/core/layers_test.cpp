@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "local_expansion/layers.hpp"
+#include "optimizers/local_expansion/layers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "costs/subpixel_volume.hpp"
 #include "fdp_stereo/matching_cost.hpp"
-#include "local_expansion/post_processing.hpp"
-#include "local_expansion/subpixel_volume.hpp"
+#include "optimizers/local_expansion/post_processing.hpp"
 
 namespace fdp_stereo {
 namespace {

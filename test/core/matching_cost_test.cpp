@@ -8,7 +8,7 @@
 
 #include "reference/matching_cost_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "fdp_stereo/evaluation.hpp"
-#include "fdp_stereo/scene.hpp"
+#include "evaluation/evaluation.hpp"
+#include "evaluation/scene.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

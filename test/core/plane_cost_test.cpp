@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "local_expansion/plane_cost.hpp"
+#include "optimizers/local_expansion/plane_cost.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "reference/local_expansion_reference.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {

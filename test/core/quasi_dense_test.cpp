@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 #include "fdp_stereo/pipeline.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"

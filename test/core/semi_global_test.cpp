@@ -12,7 +12,7 @@
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
 #include "reference/semi_global_reference.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

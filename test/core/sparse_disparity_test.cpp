@@ -14,12 +14,12 @@
 #include <opencv2/core/utils/filesystem.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "evaluation/scene.hpp"
 #include "fdp_stereo/feature_matching.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/row_alignment.hpp"
-#include "fdp_stereo/scene.hpp"
-#include "seed_grid.hpp"
-#include "seed_verification.hpp"
+#include "seeds/seed_grid.hpp"
+#include "seeds/seed_verification.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/random_volume.hpp"
-#include "simd.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fdp_stereo/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 
 namespace fdp_stereo {
 namespace reference {

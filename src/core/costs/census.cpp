@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/census.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "simd/census_kernels.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+void compare(const CensusKernels& kernels, const std::uint8_t* neighbour, const std::uint8_t* centre, int count,
+             std::uint8_t* bits) {
+  kernels.compareU8(neighbour, centre, count, bits);
+}
+void compare(const CensusKernels& kernels, const std::uint16_t* neighbour, const std::uint16_t* centre, int count,
+             std::uint8_t* bits) {
+  kernels.compareU16(neighbour, centre, count, bits);
+}
+
+/// One row of codes from the rows around it, each with window_width / 2 replicated pixels on both sides.
+template <typename T>
+void censusRow(const std::vector<const T*>& rows, int width, const CensusParams& params, std::uint8_t* bits,
+               std::uint64_t* codes) {
+  const CensusKernels& kernels = FDP_STEREO_SELECT(censusKernels);
+  const int centre_row = params.window_height / 2;
+  const int centre_column = params.window_width / 2;
+  const T* centre = rows[centre_row] + centre_column;
+  std::fill(codes, codes + width, 0);
+  std::fill(bits, bits + width, 0);
+  int pending = 0;
+  for (int j = 0; j < params.window_height; ++j) {
+    for (int i = 0; i < params.window_width; ++i) {
+      if (j == centre_row && i == centre_column) continue;
+      compare(kernels, rows[j] + i, centre, width, bits);
+      if (++pending < 8) continue;
+      kernels.append(bits, width, pending, codes);
+      std::fill(bits, bits + width, 0);
+      pending = 0;
+    }
+  }
+  if (pending > 0) kernels.append(bits, width, pending, codes);
+}
+
+/// Row y with window_width / 2 replicated pixels on both sides; y is clamped into the image.
+template <typename T>
+void padRow(const cv::Mat& grey, int y, int border, T* padded) {
+  const T* row = grey.ptr<T>(std::clamp(y, 0, grey.rows - 1));
+  std::fill(padded, padded + border, row[0]);
+  std::copy(row, row + grey.cols, padded + border);
+  std::fill(padded + border + grey.cols, padded + 2 * border + grey.cols, row[grey.cols - 1]);
+}
+
+template <typename T>
+void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
+  thread_local std::vector<T> window;  // keep their memory from row to row
+  thread_local std::vector<std::uint8_t> bits;
+  thread_local std::vector<const T*> rows;
+  const int border = params.window_width / 2;
+  const std::size_t length = static_cast<std::size_t>(grey.cols) + 2 * border;
+  window.resize(length * params.window_height);
+  bits.resize(grey.cols);
+  rows.resize(params.window_height);
+  for (int j = 0; j < params.window_height; ++j) {
+    padRow(grey, y + j - params.window_height / 2, border, window.data() + j * length);
+    rows[j] = window.data() + j * length;
+  }
+  censusRow(rows, grey.cols, params, bits.data(), codes);
+}
+
+}  // namespace
+
+void checkCensus(const cv::Mat& grey, const CensusParams& params) {
+  if (grey.type() != CV_8UC1 && grey.type() != CV_16UC1) {
+    throw std::invalid_argument("census needs a grey image of 8 or 16 bits, not type " + std::to_string(grey.type()));
+  }
+  const bool odd = params.window_width % 2 == 1 && params.window_height % 2 == 1;
+  const int neighbours = params.window_width * params.window_height - 1;
+  if (!odd || params.window_width < 1 || params.window_height < 1 || neighbours < 1 || neighbours > 64) {
+    throw std::invalid_argument("census window " + std::to_string(params.window_width) + " x " +
+                                std::to_string(params.window_height) + ": sides must be odd, with 1 to 64 neighbours");
+  }
+}
+
+void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
+  if (grey.depth() == CV_8U) {
+    censusRowAt<std::uint8_t>(grey, params, y, codes);
+  } else {
+    censusRowAt<std::uint16_t>(grey, params, y, codes);
+  }
+}
+
+void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
+  checkCensus(grey, params);
+  codes.resize(grey.total());
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < grey.rows; ++y) {
+    computeCensusRow(grey, params, y, codes.data() + static_cast<std::size_t>(y) * grey.cols);
+  }
+}
+
+}  // namespace fdp_stereo

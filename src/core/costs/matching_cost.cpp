@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/matching_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <opencv2/imgproc.hpp>
+
+#include "costs/image_planes.hpp"
+#include "simd/matching_cost_kernels.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+constexpr int kMaxRhoUnits = 2047;  // rho of 64 grey levels: theta(64, 10) = 0.998
+constexpr int kUnitsPerBit = 16;    // fixed point of S_census
+
+bool usesColour(MatchingCostType type) { return type != MatchingCostType::kCensus; }
+bool usesCensus(MatchingCostType type) {
+  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kAdCensus ||
+         type == MatchingCostType::kCensus;
+}
+bool usesGradient(MatchingCostType type) {
+  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kRho;
+}
+
+/// theta of eq. (5).
+double theta(double cost, double lambda) { return 1.0 - std::exp(-cost / lambda); }
+
+/// Into memory of its own: the grey image may be the caller's.
+cv::Mat blurred(const cv::Mat& grey, double sigma_px) {
+  if (sigma_px <= 0.0) return grey;
+  cv::Mat result;
+  cv::GaussianBlur(grey, result, {}, sigma_px, 0, cv::BORDER_REPLICATE);
+  return result;
+}
+
+/// Fixed-point theta: costs come in `units` per 1, weight * theta = result / 2^shift * step.
+Theta makeTheta(double units, double lambda, double weight, double step, int shift) {
+  const double limit = std::clamp(std::floor(8.0 * lambda * units), 1.0, 2047.0);
+  Theta theta{};
+  theta.limit = static_cast<std::uint16_t>(limit);
+  while ((theta.limit << (theta.shift + 1)) <= 65535) ++theta.shift;
+  const double factor = 65536.0 * 65536.0 / (16.0 * lambda * units * (1 << theta.shift));
+  theta.factor = static_cast<std::uint16_t>(std::min(std::lround(factor), 65535L));
+  theta.weight = static_cast<std::uint16_t>(std::min(weight / step * (1 << shift) * 65536.0 / kThetaOne, 65535.0));
+  return theta;
+}
+
+/// The same in a table, exactly.
+void fillThetaTable(double units, double lambda, double weight, double step, int shift,
+                    std::vector<std::uint16_t>& table) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = weight * theta(static_cast<double>(i) / units, lambda) / step * (1 << shift);
+    table[i] = static_cast<std::uint16_t>(std::min(std::lround(value), 65535L));
+  }
+}
+
+}  // namespace
+
+/// All that the loop over the rows reads.
+struct MatchingCost::Source {
+  CensusParams census;
+  ImagePlanes left, right;
+  cv::Mat left_grey8, right_grey8;            // of 16-bit colour images
+  cv::Mat left_blurred[3], right_blurred[3];  // one per scale
+  int scales = 0;
+  std::uint16_t bit_weights[3] = {};  // fixed-point w_i of eq. (7)
+  int shift = 0;
+  Theta rho_theta{}, census_theta{};                                                    // 8-bit volumes
+  std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // 16-bit volumes
+  std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
+
+  void load(const StereoPair& pair, const MatchingCostParams& params, float step);
+  /// Lets go of the images.
+  void release();
+  void loadCensus(const StereoPair& pair, const MatchingCostParams& params);
+  void loadTheta(const MatchingCostParams& params, float step);
+};
+
+void MatchingCost::Source::loadCensus(const StereoPair& pair, const MatchingCostParams& params) {
+  checkCensus(pair.left_grey, params.census);  // here, for nothing may be thrown among threads
+  checkCensus(pair.right_grey, params.census);
+  census = params.census;
+  scales = std::clamp(params.scales, 1, 3);
+  double sum = 0.0;
+  for (int i = 0; i < scales; ++i) sum += params.scale_weights[i];
+  for (int i = 0; i < scales; ++i) {
+    left_blurred[i] = blurred(pair.left_grey, params.scale_sigmas_px[i]);
+    right_blurred[i] = blurred(pair.right_grey, params.scale_sigmas_px[i]);
+    const double weight = sum > 0.0 ? params.scale_weights[i] / sum : 1.0 / scales;
+    bit_weights[i] = static_cast<std::uint16_t>(std::lround(weight * kUnitsPerBit));
+  }
+}
+
+void MatchingCost::Source::loadTheta(const MatchingCostParams& params, float step) {
+  // Fractional bits that keep the largest cost inside 16 bits.
+  shift = 0;
+  while (shift < 7 && maxMatchingCost(params) / step * (2 << shift) < 65535.0) ++shift;
+  const double lambda = usesGradient(params.type) ? params.lambda_rho : params.lambda_ad;
+  const double census_weight = usesCensus(params.type) ? 1.0 : 0.0;
+  const double colour_weight = usesColour(params.type) ? (usesCensus(params.type) ? params.rho_weight : 1.0) : 0.0;
+  if (params.bits == 8) {
+    rho_theta = makeTheta(kUnitsPerGreyLevel, lambda, colour_weight, step, shift);
+    census_theta = makeTheta(kUnitsPerBit, params.lambda_census, census_weight, step, shift);
+  } else {
+    fillThetaTable(kUnitsPerGreyLevel, lambda, colour_weight, step, shift, rho_table);
+    fillThetaTable(kUnitsPerBit, params.lambda_census, census_weight, step, shift, census_table);
+  }
+}
+
+void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams& params, float step) {
+  const cv::Mat& grey_left = eightBitGrey(pair.left, pair.left_grey, left_grey8);
+  const cv::Mat& grey_right = eightBitGrey(pair.right, pair.right_grey, right_grey8);
+  left.clear();
+  right.clear();
+  if (params.type == MatchingCostType::kBirchfieldTomasi) {
+    left.useBirchfieldTomasi(grey_left);
+    right.useBirchfieldTomasi(grey_right);
+  } else if (usesGradient(params.type)) {
+    left.useRho(pair.left, grey_left, params.alpha);
+    right.useRho(pair.right, grey_right, params.alpha);
+  } else if (usesColour(params.type)) {
+    left.useColour(pair.left);
+    right.useColour(pair.right);
+  }
+  scales = 0;
+  if (usesCensus(params.type)) loadCensus(pair, params);
+  loadTheta(params, step);
+}
+
+void MatchingCost::Source::release() {
+  left.clear();
+  right.clear();
+  for (int i = 0; i < scales; ++i) {
+    left_blurred[i].release();
+    right_blurred[i].release();
+  }
+}
+
+namespace {
+
+using CostSource = MatchingCost::Source;
+
+/// right[t] = row[width - 1 - min - t], clamped into the row: entry (width - 1 - x) + i meets left x at disparity min +
+/// i.
+template <typename T>
+void reverseRow(const T* row, int width, int min, int length, T* right) {
+  for (int t = 0; t < length; ++t) right[t] = row[std::clamp(width - 1 - min - t, 0, width - 1)];
+}
+
+/// Buffers of one thread for one row.
+struct RowScratch {
+  std::vector<std::int16_t> left, right;               // planes; right ones reversed
+  std::vector<std::uint64_t> left_codes, right_codes;  // [scale]; right ones reversed
+  std::vector<std::int16_t> planes;                    // of the right row, as they come
+  std::vector<std::uint64_t> codes;
+  std::vector<std::uint16_t> rho, census;  // of one pixel
+};
+
+void loadPlanes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  const int count = source.left.count();
+  scratch.left.resize(static_cast<std::size_t>(count) * width);
+  scratch.planes.resize(static_cast<std::size_t>(count) * width);
+  scratch.right.resize(static_cast<std::size_t>(count) * length);
+  source.left.fillRow(y, scratch.left.data());
+  source.right.fillRow(y, scratch.planes.data());
+  for (std::ptrdiff_t c = 0; c < count; ++c) {
+    reverseRow(scratch.planes.data() + c * width, width, min, length, scratch.right.data() + c * length);
+  }
+}
+
+void loadCodes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  scratch.left_codes.resize(static_cast<std::size_t>(source.scales) * width);
+  scratch.codes.resize(width);
+  scratch.right_codes.resize(static_cast<std::size_t>(source.scales) * length);
+  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
+    computeCensusRow(source.left_blurred[i], source.census, y, scratch.left_codes.data() + i * width);
+    computeCensusRow(source.right_blurred[i], source.census, y, scratch.codes.data());
+    reverseRow(scratch.codes.data(), width, min, length, scratch.right_codes.data() + i * length);
+  }
+}
+
+void loadRow(const CostSource& source, int y, int width, const CostVolume& volume, RowScratch& scratch) {
+  const int length = width + volume.stride();
+  if (source.left.count() > 0) loadPlanes(source, y, width, volume.range().min, length, scratch);
+  loadCodes(source, y, width, volume.range().min, length, scratch);
+  scratch.rho.assign(volume.stride(), 0);
+  scratch.census.assign(volume.stride(), 0);
+}
+
+void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
+             std::uint8_t* costs) {
+  kernels.combineU8(scratch.rho.data(), source.rho_theta, scratch.census.data(), source.census_theta, count,
+                    source.shift, costs);
+}
+void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
+             std::uint16_t* costs) {
+  kernels.combineU16(scratch.rho.data(), source.rho_table.data(), scratch.census.data(), source.census_table.data(),
+                     count, source.shift, costs);
+}
+
+template <typename T>
+void costsOfPixel(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
+                  int stride, T* costs) {
+  const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
+  const int length = width + stride;
+  const int offset = width - 1 - x;
+  const int planes = source.left.count();
+  std::int16_t left[5] = {};
+  for (int c = 0; c < planes; ++c) left[c] = scratch.left[static_cast<std::size_t>(c) * width + x];
+  const std::int16_t* right = scratch.right.data() + offset;
+  if (type == MatchingCostType::kBirchfieldTomasi) {
+    kernels.birchfieldTomasi(left, right, length, count, kMaxRhoUnits, scratch.rho.data());
+  } else if (planes > 0) {
+    kernels.absoluteDifferences(left, right, planes, length, count, kMaxRhoUnits, scratch.rho.data());
+  }
+  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
+    kernels.hamming(scratch.left_codes[i * width + x], scratch.right_codes.data() + i * length + offset, count,
+                    source.bit_weights[i], i == 0, scratch.census.data());
+  }
+  combine(kernels, source, scratch, count, costs);
+}
+
+/// Repeats the nearest valid cost along d where x - d is outside the right image.
+template <typename T>
+void repeatBorder(T* costs, int x, int width, DisparityRange range, int stride, T max_raw) {
+  const int first = std::clamp(x - (width - 1) - range.min, 0, range.count);  // x - d <= width - 1
+  const int last = std::min(x - range.min, range.count - 1);                  // x - d >= 0
+  if (last >= 0 && first < range.count) {
+    for (int i = 0; i < first; ++i) costs[i] = costs[first];
+    for (int i = last + 1; i < range.count; ++i) costs[i] = costs[last];
+  }
+  std::fill(costs + range.count, costs + stride, max_raw);
+}
+
+/// Repeats the cost of the nearest pixel of row y with a valid x - d, at each disparity.
+template <typename T>
+void repeatPixels(int y, CostVolume& volume) {
+  const int last_x = volume.width() - 1;
+  for (int i = 0; i < volume.range().count; ++i) {
+    const int d = volume.range().min + i;
+    for (int x = 0; x < std::min(d, last_x + 1); ++x) {
+      volume.at<T>(y, x)[i] = volume.at<T>(y, std::min(d, last_x))[i];
+    }
+    for (int x = last_x; x > std::max(last_x + d, -1); --x) {
+      volume.at<T>(y, x)[i] = volume.at<T>(y, std::max(last_x + d, 0))[i];
+    }
+  }
+}
+
+template <typename T>
+void fillVolume(const CostSource& source, const MatchingCostParams& params, CostVolume& volume) {
+  const int width = volume.width();
+#pragma omp parallel
+  {
+    thread_local RowScratch scratch;  // keeps its memory
+#pragma omp for schedule(static)
+    for (int y = 0; y < volume.height(); ++y) {
+      loadRow(source, y, width, volume, scratch);
+      for (int x = 0; x < width; ++x) {
+        T* costs = volume.at<T>(y, x);
+        costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
+        repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
+      }
+      if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
+    }
+  }
+}
+
+}  // namespace
+
+double maxMatchingCost(const MatchingCostParams& params) {
+  const bool mixed = usesColour(params.type) && usesCensus(params.type);
+  return mixed ? 1.0 + params.rho_weight : 1.0;
+}
+
+MatchingCost::MatchingCost() : source_(std::make_unique<Source>()) {}
+MatchingCost::~MatchingCost() = default;
+
+void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
+                           CostVolume& volume) {
+  const int max_raw = static_cast<int>(std::lround(maxMatchingCost(params) / step));
+  const int largest = params.bits == 8 ? 255 : 65535;
+  if (!(step > 0.0F) || max_raw > largest) {
+    throw std::invalid_argument("matching cost step " + std::to_string(step) + ": the largest cost must fit " +
+                                std::to_string(params.bits) + " bits");
+  }
+  const auto depth = params.bits == 8 ? CostVolume::Depth::kU8 : CostVolume::Depth::kU16;
+  volume.create(pair.left.rows, pair.left.cols, range, depth, step, max_raw);
+  source_->load(pair, params, step);
+  if (depth == CostVolume::Depth::kU8) {
+    fillVolume<std::uint8_t>(*source_, params, volume);
+  } else {
+    fillVolume<std::uint16_t>(*source_, params, volume);
+  }
+  source_->release();
+}
+
+void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
+                         CostVolume& volume) {
+  MatchingCost().compute(pair, range, params, step, volume);
+}
+
+}  // namespace fdp_stereo

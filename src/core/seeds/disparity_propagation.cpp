@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fdp_stereo/disparity_propagation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "seeds/surface_propagation.hpp"
+
+namespace fdp_stereo {
+namespace {
+
+/// A seed on the pixel grid of image and volume.
+struct GridSeed {
+  int x, y, index;
+  int order;  ///< among the seeds as given
+};
+
+/// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
+/// They live until the next call of this thread.
+const std::vector<GridSeed>& onGrid(const Seeds& seeds, DisparityAxis axis, const CostVolume& volume) {
+  thread_local std::vector<GridSeed> grid;  // keeps its memory
+  grid.clear();
+  for (const Seed& seed : seeds) {
+    const float index = (seed.d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
+    const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(index)),
+                     static_cast<int>(grid.size())};
+    const bool inside = g.x >= 0 && g.y >= 0 && g.x < volume.width() && g.y < volume.height();
+    if (inside && g.index >= 0 && g.index < volume.range().count) grid.push_back(g);
+  }
+  std::sort(grid.begin(), grid.end(), [](const GridSeed& a, const GridSeed& b) {
+    return std::tie(a.y, a.x, a.order) < std::tie(b.y, b.x, b.order);
+  });
+  return grid;
+}
+
+/// |a - b|_1 over the channels.
+int manhattan(const uchar* a, const uchar* b, int channels) {
+  int sum = 0;
+  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
+  return sum;
+}
+
+/// 2^16 (1 - w) of eq. (11) by colour distance.
+std::array<std::uint32_t, 3 * 255 + 1> makeFactors(double gamma) {
+  std::array<std::uint32_t, 3 * 255 + 1> factors{};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    factors[i] = static_cast<std::uint32_t>(std::lround(65536.0 * (1.0 - std::exp(-static_cast<double>(i) / gamma))));
+  }
+  return factors;
+}
+
+/// Algorithm 1 with rounded disparities.
+template <typename T>
+double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
+                        const DisparityPropagationParams& params, CostVolume& volume) {
+  const auto factors = makeFactors(params.gamma);
+  const int radius = params.window / 2;
+  const int channels = left.channels();
+  thread_local std::vector<std::uint8_t> touched;  // keeps its memory
+  touched.assign(left.total(), 0);
+  for (const GridSeed& seed : seeds) {
+    const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
+    for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
+      for (int x = std::max(0, seed.x - radius); x <= std::min(left.cols - 1, seed.x + radius); ++x) {
+        const std::uint32_t factor = factors[manhattan(centre, left.ptr<uchar>(y) + channels * x, channels)];
+        T& raw = volume.at<T>(y, x)[seed.index];
+        raw = static_cast<T>((raw * factor + 32768U) >> 16U);
+        touched[static_cast<std::size_t>(y) * left.cols + x] = 1;
+      }
+    }
+  }
+  return static_cast<double>(std::count(touched.begin(), touched.end(), 1)) / static_cast<double>(left.total());
+}
+
+void check(const cv::Mat& left, const DisparityPropagationParams& params, const CostVolume& volume) {
+  if (left.rows != volume.height() || left.cols != volume.width() || left.depth() != CV_8U ||
+      (left.channels() != 1 && left.channels() != 3)) {
+    throw std::invalid_argument(
+        "disparity propagation: the left image must be 8-bit with 1 or 3 channels and as large "
+        "as the cost volume");
+  }
+  if (params.window < 1 || params.window % 2 == 0) {
+    throw std::invalid_argument("disparity propagation: window " + std::to_string(params.window) +
+                                " must be odd and >= 1");
+  }
+  if (!(params.gamma > 0.0) || !(params.reach_px > 0.0) || !(params.spread_px > 0.0)) {
+    throw std::invalid_argument("disparity propagation: gamma " + std::to_string(params.gamma) + ", reach_px " +
+                                std::to_string(params.reach_px) + " and spread_px " + std::to_string(params.spread_px) +
+                                " must be > 0");
+  }
+}
+
+}  // namespace
+
+double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                          CostVolume& volume) {
+  return propagateDisparity(seeds, left, params, {volume.range().min, 1}, volume);
+}
+
+double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
+                          DisparityAxis axis, CostVolume& volume) {
+  check(left, params, volume);
+  thread_local Seeds used;  // keeps its memory
+  used.clear();
+  std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(used),
+               [&](const Seed& s) { return params.image_seeds || s.source != SeedSource::kFeature; });
+  if (used.empty()) return 0.0;
+  if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, axis, volume);
+  const std::vector<GridSeed>& grid = onGrid(used, axis, volume);
+  return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
+                                                  : propagateWindows<std::uint16_t>(grid, left, params, volume);
+}
+
+}  // namespace fdp_stereo

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simd/matching_cost_kernels.hpp"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace fdp_stereo {
+namespace FDP_STEREO_ISA {
+namespace {
+
+template <int kPlanes>
+void absoluteDifferencesOf(const std::int16_t* __restrict left, const std::int16_t* __restrict right, int plane_stride,
+                           int count, std::uint16_t limit, std::uint16_t* __restrict sums) {
+  for (int i = 0; i < count; ++i) {
+    std::uint16_t sum = 0;
+    for (int c = 0; c < kPlanes; ++c) {
+      const std::int16_t a = left[c];
+      const std::int16_t b = right[c * plane_stride + i];
+      sum = static_cast<std::uint16_t>(sum + (a > b ? a - b : b - a));
+    }
+    sums[i] = sum < limit ? sum : limit;
+  }
+}
+
+void absoluteDifferences(const std::int16_t* left, const std::int16_t* right, int planes, int plane_stride, int count,
+                         std::uint16_t limit, std::uint16_t* sums) {
+  switch (planes) {
+    case 1:
+      return absoluteDifferencesOf<1>(left, right, plane_stride, count, limit, sums);
+    case 2:
+      return absoluteDifferencesOf<2>(left, right, plane_stride, count, limit, sums);
+    case 3:
+      return absoluteDifferencesOf<3>(left, right, plane_stride, count, limit, sums);
+    default:
+      return absoluteDifferencesOf<5>(left, right, plane_stride, count, limit, sums);
+  }
+}
+
+void birchfieldTomasi(const std::int16_t* __restrict left, const std::int16_t* __restrict right, int plane_stride,
+                      int count, std::uint16_t limit, std::uint16_t* __restrict sums) {
+  const std::int16_t* __restrict value = right;
+  const std::int16_t* __restrict smallest = right + plane_stride;
+  const std::int16_t* __restrict largest = right + 2 * plane_stride;
+  for (int i = 0; i < count; ++i) {
+    const int to_right = left[0] > largest[i]    ? left[0] - largest[i]
+                         : smallest[i] > left[0] ? smallest[i] - left[0]
+                                                 : 0;
+    const int to_left = value[i] > left[2] ? value[i] - left[2] : left[1] > value[i] ? left[1] - value[i] : 0;
+    const int cost = to_right < to_left ? to_right : to_left;
+    sums[i] = static_cast<std::uint16_t>(cost < limit ? cost : limit);
+  }
+}
+
+#if defined(__AVX2__) && !defined(__AVX512VPOPCNTDQ__)
+
+/// Set bits of left ^ right[i], i = 0..3, in the four 64-bit lanes.
+inline __m256i distances(__m256i left, const std::uint64_t* right) {
+  const __m256i table =
+      _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
+  const __m256i nibble = _mm256_set1_epi8(15);
+  const __m256i bits = _mm256_xor_si256(left, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(right)));
+  const __m256i low = _mm256_shuffle_epi8(table, _mm256_and_si256(bits, nibble));
+  const __m256i high = _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(bits, 4), nibble));
+  return _mm256_sad_epu8(_mm256_add_epi8(low, high), _mm256_setzero_si256());
+}
+
+/// 16 distances at a time: this instruction set counts the bits of one register only.
+void hamming(std::uint64_t left, const std::uint64_t* right, int count, std::uint16_t weight, bool first,
+             std::uint16_t* sums) {
+  const __m256i lefts = _mm256_set1_epi64x(static_cast<long long>(left));
+  const __m256i weights = _mm256_set1_epi16(static_cast<short>(weight));
+  const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+  for (int i = 0; i < count; i += 16) {
+    const __m256i ab = _mm256_packus_epi32(distances(lefts, right + i), distances(lefts, right + i + 4));
+    const __m256i cd = _mm256_packus_epi32(distances(lefts, right + i + 8), distances(lefts, right + i + 12));
+    const __m256i bits = _mm256_permutevar8x32_epi32(_mm256_packus_epi32(ab, cd), order);
+    auto* to = reinterpret_cast<__m256i*>(sums + i);
+    const __m256i weighted = _mm256_mullo_epi16(bits, weights);
+    _mm256_storeu_si256(to, first ? weighted : _mm256_add_epi16(weighted, _mm256_loadu_si256(to)));
+  }
+}
+
+#else
+
+inline std::uint64_t setBits(std::uint64_t x) {
+#if defined(__x86_64__) && !defined(__POPCNT__)
+  // No instruction counts them, but these vectorise.
+  x -= (x >> 1) & 0x5555555555555555U;
+  x = (x & 0x3333333333333333U) + ((x >> 2) & 0x3333333333333333U);
+  x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fU;
+  x += x >> 8;
+  x += x >> 16;
+  return (x + (x >> 32)) & 127U;
+#else
+  return static_cast<std::uint64_t>(__builtin_popcountll(x));
+#endif
+}
+
+void hamming(std::uint64_t left, const std::uint64_t* __restrict right, int count, std::uint16_t weight, bool first,
+             std::uint16_t* __restrict sums) {
+  for (int i = 0; i < count; ++i) {
+    const auto distance = static_cast<std::uint16_t>(weight * setBits(left ^ right[i]));
+    sums[i] = first ? distance : static_cast<std::uint16_t>(sums[i] + distance);
+  }
+}
+
+#endif
+
+// Vectors of the compiler, with the one instruction that it does not find by itself.
+typedef std::uint16_t U16x16 __attribute__((vector_size(32)));
+typedef std::uint8_t U8x16 __attribute__((vector_size(16)));
+
+/// Upper halves of the 32-bit products.
+inline U16x16 productHigh(const U16x16& a, const U16x16& b) {
+#if defined(__AVX2__)
+  return reinterpret_cast<U16x16>(_mm256_mulhi_epu16(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
+#elif defined(__SSE2__)
+  __m128i of_a[2], of_b[2];
+  __builtin_memcpy(of_a, &a, sizeof(a));
+  __builtin_memcpy(of_b, &b, sizeof(b));
+  for (int i = 0; i < 2; ++i) of_a[i] = _mm_mulhi_epu16(of_a[i], of_b[i]);
+  U16x16 result;
+  __builtin_memcpy(&result, of_a, sizeof(result));
+  return result;
+#else
+  U16x16 result;
+  for (int i = 0; i < 16; ++i) {
+    result[i] = static_cast<std::uint16_t>((static_cast<std::uint32_t>(a[i]) * b[i]) >> 16);
+  }
+  return result;
+#endif
+}
+
+inline U16x16 thetaOf(const std::uint16_t* costs, const Theta& theta) {
+  U16x16 v;
+  __builtin_memcpy(&v, costs, sizeof(v));
+  v = v < theta.limit ? v : U16x16{} + theta.limit;
+  const U16x16 y = productHigh(v << theta.shift, U16x16{} + theta.factor);
+  const U16x16 square = productHigh(productHigh(y, y), U16x16{} + kThetaSquare);
+  U16x16 e = ~y + square;  // 65535 - y + ...
+  for (int i = 0; i < 4; ++i) e = productHigh(e, e);
+  return productHigh(kThetaOne - e, U16x16{} + theta.weight);
+}
+
+void combineU8(const std::uint16_t* a, const Theta& theta_a, const std::uint16_t* b, const Theta& theta_b, int count,
+               int shift, std::uint8_t* costs) {
+  const Theta of_a = theta_a, of_b = theta_b;  // copies that the bytes stored cannot change
+  const auto half = static_cast<std::uint16_t>((1U << shift) >> 1);
+  for (int i = 0; i < count; i += 16) {
+    const U16x16 sum = thetaOf(a + i, of_a) + thetaOf(b + i, of_b) + half;
+    const U8x16 rounded = __builtin_convertvector(sum >> static_cast<std::uint16_t>(shift), U8x16);
+    __builtin_memcpy(costs + i, &rounded, sizeof(rounded));
+  }
+}
+
+void combineU16(const std::uint16_t* __restrict a, const std::uint16_t* __restrict table_a,
+                const std::uint16_t* __restrict b, const std::uint16_t* __restrict table_b, int count, int shift,
+                std::uint16_t* __restrict costs) {
+  const std::uint32_t half = (1U << shift) >> 1;
+  for (int i = 0; i < count; ++i) {
+    costs[i] = static_cast<std::uint16_t>((static_cast<std::uint32_t>(table_a[a[i]]) + table_b[b[i]] + half) >> shift);
+  }
+}
+
+}  // namespace
+
+const MatchingCostKernels& matchingCostKernels() {
+  static const MatchingCostKernels kernels = {absoluteDifferences, birchfieldTomasi, hamming, combineU8, combineU16};
+  return kernels;
+}
+
+}  // namespace FDP_STEREO_ISA
+}  // namespace fdp_stereo

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "simd/simd.hpp"
+
+namespace fdp_stereo {
+
+/// weight * theta (paper eq. 5) of a fixed-point cost v, in 16-bit integers: with y = min(v, limit) / (16 lambda) below
+/// 1/2, exp(-16 y) is (1 - y + 0.475 y^2)^16, off by at most 6e-4.
+struct Theta {
+  std::uint16_t limit;  ///< theta is 1 from here on
+  std::uint16_t shift;  ///< y = (v << shift) * factor / 2^32
+  std::uint16_t factor;
+  std::uint16_t weight;  ///< of the result, 65520 being theta = 1
+};
+constexpr std::uint16_t kThetaOne = 65520;     ///< what four squarings leave of 65535
+constexpr std::uint16_t kThetaSquare = 31130;  ///< 0.475 * 2^16
+
+/// Inner loops of stage 4, compiled per instruction set. All work on the disparities of one pixel: entry i belongs to
+/// the right pixel right[i], the right row being stored from right to left.
+struct MatchingCostKernels {
+  /// sums[i] = sum over the planes of |left[c] - right[c * plane_stride + i]|, at most `limit`.
+  void (*absoluteDifferences)(const std::int16_t* left, const std::int16_t* right, int planes, int plane_stride,
+                              int count, std::uint16_t limit, std::uint16_t* sums);
+  /// Birchfield-Tomasi: left and right hold three planes (value, smallest and largest within half a pixel).
+  void (*birchfieldTomasi)(const std::int16_t* left, const std::int16_t* right, int plane_stride, int count,
+                           std::uint16_t limit, std::uint16_t* sums);
+  /// sums[i] (+)= weight * popcount(left ^ right[i]); up to the next multiple of 16 entries are read and written, too.
+  void (*hamming)(std::uint64_t left, const std::uint64_t* right, int count, std::uint16_t weight, bool first,
+                  std::uint16_t* sums);
+  /// costs[i] = (theta_a(a[i]) + theta_b(b[i]) + half) >> shift, for `count` rounded up to a multiple of 16 entries.
+  void (*combineU8)(const std::uint16_t* a, const Theta& theta_a, const std::uint16_t* b, const Theta& theta_b,
+                    int count, int shift, std::uint8_t* costs);
+  /// costs[i] = (table_a[a[i]] + table_b[b[i]] + half) >> shift. Tables of fixed-point costs.
+  void (*combineU16)(const std::uint16_t* a, const std::uint16_t* table_a, const std::uint16_t* b,
+                     const std::uint16_t* table_b, int count, int shift, std::uint16_t* costs);
+};
+FDP_STEREO_DECLARE_KERNELS(MatchingCostKernels, matchingCostKernels)
+
+}  // namespace fdp_stereo
