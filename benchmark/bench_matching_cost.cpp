@@ -9,13 +9,13 @@ namespace {
 
 /// bits, threads
 void BM_matchingCost(benchmark::State& state) {
-  PipelineParams params = benchmarkParams();
-  params.matching_cost.bits = static_cast<int>(state.range(0));
+  const PipelineParams params = benchmarkParams();
   omp_set_num_threads(static_cast<int>(state.range(1)));
-  const float step = params.matching_cost.bits == 8 ? 0.02F : 0.001F;
+  const CostScale scale =
+      state.range(0) == 8 ? CostScale{CostVolume::Depth::kU8, 0.02F} : CostScale{CostVolume::Depth::kU16, 0.001F};
   MatchingCost matching_cost;
   CostVolume volume;
-  for (auto _ : state) matching_cost.compute(benchmarkPair(), params.search, params.matching_cost, step, volume);
+  for (auto _ : state) matching_cost.compute(benchmarkPair(), params.search, params.matching_cost, scale, volume);
   setBytesMoved(state, volume.bytes());  // written once; what is read stays in the cache
 }
 BENCHMARK(BM_matchingCost)->ArgsProduct({{8, 16}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();

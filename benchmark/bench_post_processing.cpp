@@ -11,13 +11,11 @@ namespace {
 const OptimizerOutput& optimized() {
   static const OptimizerOutput output = [] {
     const PipelineParams params = benchmarkParams();
-    SemiGlobal optimizer(params.semi_global);
-    const auto step = static_cast<float>((maxMatchingCost(params.matching_cost) + optimizer.costHeadroom()) / 252.0);
+    const CostScale scale = fitCostScale(maxMatchingCost(params.matching_cost), penaltiesOf(params.semi_global));
     CostVolume volume;
-    computeMatchingCost(benchmarkPair(), params.search, params.matching_cost, step, volume);
+    computeMatchingCost(benchmarkPair(), params.search, params.matching_cost, scale, volume);
     OptimizerOutput result;
-    const Seeds seeds;
-    optimizer.optimize({volume, benchmarkPair(), seeds, nullptr, &params.matching_cost, {}, {}}, result);
+    SemiGlobalMatcher().match(volume, benchmarkPair().left_grey, params.semi_global, result);
     return result;
   }();
   return output;

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "fdp_stereo/buffer.hpp"
 #include "fdp_stereo/types.hpp"
 
 namespace fdp_stereo {
@@ -43,11 +43,11 @@ class CostVolume {
   /// D raw costs of pixel (x, y), first entry is range().min. T must be the type of depth().
   template <typename T>
   T* at(int y, int x) {
-    return reinterpret_cast<T*>(data_.data()) + (static_cast<std::size_t>(y) * width_ + x) * stride_;
+    return data_.as<T>() + (static_cast<std::size_t>(y) * width_ + x) * stride_;
   }
   template <typename T>
   const T* at(int y, int x) const {
-    return reinterpret_cast<const T*>(data_.data()) + (static_cast<std::size_t>(y) * width_ + x) * stride_;
+    return data_.as<T>() + (static_cast<std::size_t>(y) * width_ + x) * stride_;
   }
 
   /// Raw cost by disparity index (d - range().min); slow, for tests and rare look-ups.
@@ -65,7 +65,7 @@ class CostVolume {
   float step_ = 1.0F;
   DisparityRange range_;
   Depth depth_ = Depth::kU8;
-  std::vector<std::uint64_t> data_;  // 8-byte words; only ever read through at<T>()
+  Buffer data_;
 };
 
 }  // namespace fdp_stereo

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <memory>
+#include <atomic>
+#include <functional>
 
+#include "fdp_stereo/cost_volume.hpp"
 #include "fdp_stereo/optimizer.hpp"
-#include "fdp_stereo/semi_global.hpp"
+#include "fdp_stereo/types.hpp"
 
 namespace fdp_stereo {
 
@@ -54,7 +55,6 @@ struct LocalExpansionParams {
   double stop_gain = 0.0;            ///< %: stop when a round lowers the energy by less; 0 = all rounds
   int seed = 0;                      ///< of the random numbers
   double max_time_ms = 0.0;          ///< return the best labelling after this time; 0 = no limit
-  bool warm_start = false;           ///< offer the planes of the previous frame
   // Afterwards.
   bool both_views = true;          ///< label the right view too, check and fill
   double max_difference_px = 1.5;  ///< of the left-right check
@@ -62,24 +62,28 @@ struct LocalExpansionParams {
   double median_gamma = 10.0;      ///< its weight exp(-|dI|_1 / gamma)
 };
 
-/// Stage 7 with planes. Gives dense maps of both views (filled after its own left-right check), and the left
-/// view's energy before the first and after every round.
-class LocalExpansion : public Optimizer {
- public:
-  LocalExpansion(const LocalExpansionParams& params, const SemiGlobalParams& initial);
-  ~LocalExpansion() override;
-  /// Throws std::invalid_argument where the volume does not fit the images, or where disparity_steps > 1 and
-  /// input.matching_cost is null.
-  void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
-  double costHeadroom() const override;
-  double bytesPerCost() const override;
-  void reset() override;
+/// A view of a pair as local expansion works on it: the right one is mirrored, so that both look alike.
+enum class ExpandedView { kLeft, kRight };
 
- private:
-  struct State;
-  LocalExpansionParams params_;
-  SemiGlobalParams initial_;
-  std::unique_ptr<State> state_;
+/// What local expansion works on. References must outlive the call.
+struct LocalExpansionInput {
+  const CostVolume& volume;        ///< of the left view
+  const StereoPair& pair;          ///< left as given, right aligned
+  const Seeds& seeds;              ///< whose planes are offered
+  const OptimizerOutput& initial;  ///< disparities of both views to start from, or empty maps
+  /// Writes the costs of a view at `steps` entries per px of disparity; asked for where disparity_steps > 1.
+  std::function<void(ExpandedView, int steps, CostVolume&)> finer_costs;
+  const std::atomic<bool>* cancel = nullptr;  ///< set from another thread: return the best so far, soon
+  OptimizerProgress progress;                 ///< may be empty
 };
+
+/// Stage 7 with planes. Gives dense maps of both views (filled after its own left-right check), and the left
+/// view's energy before the first and after every round; the margin is what the data term is below its truncation, 0
+/// where a plane was filled in. Throws std::invalid_argument where the volume does not fit the images, or where
+/// disparity_steps > 1 and nobody gives finer costs.
+void expandLocally(const LocalExpansionInput& input, const LocalExpansionParams& params, OptimizerOutput& output);
+
+/// Bytes that it needs beside the volume for every cost in it.
+double bytesPerCost(const LocalExpansionParams& params);
 
 }  // namespace fdp_stereo

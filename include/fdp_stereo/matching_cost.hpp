@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "fdp_stereo/census.hpp"
+#include "fdp_stereo/cost_scale.hpp"
 #include "fdp_stereo/cost_volume.hpp"
 #include "fdp_stereo/types.hpp"
 
@@ -32,7 +33,6 @@ struct MatchingCostParams {
   double lambda_ad = 10.0;                                  ///< eq. (6)
   double rho_weight = 1.0;  ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
   CostBorder border = CostBorder::kRepeatDisparity;
-  int bits = 8;  ///< of one stored cost: 8 or 16
 };
 
 /// Largest cost that the parameters can give (2 for the paper's form).
@@ -43,13 +43,13 @@ class MatchingCost {
  public:
   MatchingCost();
   ~MatchingCost();
-  MatchingCost(const MatchingCost&) = delete;
-  MatchingCost& operator=(const MatchingCost&) = delete;
+  MatchingCost(MatchingCost&&) noexcept;
+  MatchingCost& operator=(MatchingCost&&) noexcept;
 
-  /// Fills the volume. step = cost of one raw unit; raw costs are rounded and at most round(max / step).
+  /// Fills the volume. Raw costs are rounded and at most round(max / scale.step).
   /// Where x - d leaves the right image the nearest valid cost along d is repeated.
-  /// Throws std::invalid_argument for a step with which the largest cost does not fit params.bits.
-  void compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
+  /// Throws std::invalid_argument for a step with which the largest cost does not fit the depth.
+  void compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, const CostScale& scale,
                CostVolume& volume);
 
   struct Source;
@@ -59,7 +59,7 @@ class MatchingCost {
 };
 
 /// The same with buffers of its own.
-void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
-                         CostVolume& volume);
+void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params,
+                         const CostScale& scale, CostVolume& volume);
 
 }  // namespace fdp_stereo

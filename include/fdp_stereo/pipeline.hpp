@@ -37,8 +37,8 @@ class Pipeline {
   /// Throws std::invalid_argument where validate() does.
   explicit Pipeline(const PipelineParams& params);
   ~Pipeline();
-  Pipeline(const Pipeline&) = delete;
-  Pipeline& operator=(const Pipeline&) = delete;
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
 
   /// Disparity of a rectified pair: 8U or 16U, 1 or 3 (BGR) channels, equal sizes; never modified. external: seeds
   /// from other sensors. cancel: may be set from another thread; the run then ends soon with what it has.
@@ -51,21 +51,23 @@ class Pipeline {
   const PipelineParams& params() const { return params_; }
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
-  /// Forgets what was learnt from earlier frames (row alignment, previous planes).
+  /// Forgets what was learnt from earlier frames (row alignment).
   void reset();
 
  private:
-  struct Buffers;
-  Seeds matchQuasiDense(const StereoPair& pair, const CostVolume& volume);
+  struct State;
+  struct Frame;
   RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
+  void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
+  void spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume);
+  void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
+  void expandPlanes(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
+  void refine(Frame& frame, PipelineResult& result) const;
   void restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given, PipelineResult& result) const;
-  void postProcess(const cv::Mat& left, OptimizerOutput& optimized, PipelineResult& result) const;
 
   PipelineParams params_;
   OptimizerProgress progress_;
-  std::unique_ptr<Optimizer> optimizer_;
-  RowAlignmentAccumulator row_alignment_;
-  std::unique_ptr<Buffers> buffers_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace fdp_stereo

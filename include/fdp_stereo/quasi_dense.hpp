@@ -24,11 +24,11 @@ struct QuasiDenseParams {
 /// What spreads the seeds: the surface form of stage 6.
 DisparityPropagationParams surfacesOf(const QuasiDenseParams& params);
 
-/// Semi-global matching along 4 paths over some rows of the volume; disparities that pass a left-right check and lie in
+/// Semi-global matching over some rows of the volume; disparities that pass a left-right check and lie in
 /// no speckle become seeds, each the median of the 7 pixels of its row around it; seeds that fewer than 2 of the 8
-/// around them agree with (2 px) are left out. Sorted by (y, x), source kQuasiDense. Throws std::invalid_argument where
-/// semi_global does.
-Seeds quasiDenseSeeds(const CostVolume& volume, const StereoPair& pair, const QuasiDenseParams& params,
-                      SemiGlobal& semi_global);
+/// around them agree with (2 px) are left out. Sorted by (y, x), source kQuasiDense. guide and penalties
+/// are those of SemiGlobalMatcher::match(), which throws.
+Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
+                      const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher);
 
 }  // namespace fdp_stereo

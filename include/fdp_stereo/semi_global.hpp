@@ -2,35 +2,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+
+#include "fdp_stereo/cost_volume.hpp"
 #include "fdp_stereo/optimizer.hpp"
 #include "fdp_stereo/subpixel.hpp"
 
 namespace fdp_stereo {
 
-/// Semi-global matching (Hirschmueller, PAMI 2008) on the cost volume.
+/// Semi-global matching (Hirschmueller, PAMI 2008) along four paths: both ways along rows and columns.
 struct SemiGlobalParams {
-  int paths = 8;              ///< 4 or 8
-  double p1 = 0.8;            ///< cost units: disparity changes by 1
-  double p2 = 4.0;            ///< cost units: disparity changes by more
-  double p2_gradient = 0.05;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
+  double p1 = 0.6;            ///< cost units: disparity changes by 1
+  double p2 = 3.0;            ///< cost units: disparity changes by more
+  double p2_gradient = 0.04;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
   SubpixelFit subpixel = SubpixelFit::kBlended;
   double uniqueness_ratio = 0.0;  ///< %, as stereo_image_proc
 };
 
-class SemiGlobal : public Optimizer {
+/// What the sums over the paths need beside a cost, in cost units (see cost_scale.hpp).
+double penaltiesOf(const SemiGlobalParams& params);
+
+/// Keeps its memory from pair to pair; not thread-safe.
+class SemiGlobalMatcher {
  public:
-  explicit SemiGlobal(const SemiGlobalParams& params);
-  ~SemiGlobal() override;
-  void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
-  /// The same over every row_step-th row, from firstRow() on, as if there were no others, along `paths` (4 or 8) paths:
-  /// a rough answer for a fraction of the time. The maps have as many rows as took part.
-  void optimizeRows(const OptimizerInput& input, int paths, int row_step, OptimizerOutput& output);
+  SemiGlobalMatcher();
+  ~SemiGlobalMatcher();
+  SemiGlobalMatcher(SemiGlobalMatcher&&) noexcept;
+  SemiGlobalMatcher& operator=(SemiGlobalMatcher&&) noexcept;
+
+  /// Disparities of both views from the costs of the left one. guide: the left image, CV_8UC1, of the volume's size.
+  /// Every row_step-th row takes part, from firstRow() on, as if there were no others; the maps have as many rows as
+  /// took part. The result is the same for every number of threads. Throws std::invalid_argument for a guide of another
+  /// size or type, or costs and penalties that do not fit the depth of the volume together.
+  void match(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params, OptimizerOutput& output,
+             int row_step = 1);
   static int firstRow(int height, int row_step);
-  double costHeadroom() const override { return params_.p1 + params_.p2; }
+
+  /// Bytes beside the volume for each of its costs, with a row_step of 1.
+  static constexpr double kBytesPerCost = 2.0;
 
  private:
   struct Workspace;
-  SemiGlobalParams params_;
   std::unique_ptr<Workspace> workspace_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "fdp_stereo/cost_volume.hpp"
 #include "fdp_stereo/optimizer.hpp"
 #include "fdp_stereo/subpixel.hpp"
 
@@ -9,18 +10,12 @@ namespace fdp_stereo {
 
 struct WinnerTakesAllParams {
   SubpixelFit subpixel = SubpixelFit::kParabola;
-  double uniqueness_ratio =
-      0.0;  ///< %: the best cost must be this much below the best of a disparity more than 1 px off
+  /// %: the best cost must be this much below the best of a disparity more than 1 px off
+  double uniqueness_ratio = 0.0;
 };
 
-/// The disparity of the smallest cost, the lowest on ties, for the left view and (from the same volume) the right.
-class WinnerTakesAll : public Optimizer {
- public:
-  explicit WinnerTakesAll(const WinnerTakesAllParams& params) : params_(params) {}
-  void optimize(const OptimizerInput& input, OptimizerOutput& output) override;
-
- private:
-  WinnerTakesAllParams params_;
-};
+/// The disparity of the smallest cost for the left view and (from the same volume) the right; none where another one
+/// more than 1 px off is as good.
+void takeWinners(const CostVolume& volume, const WinnerTakesAllParams& params, OptimizerOutput& output);
 
 }  // namespace fdp_stereo

@@ -10,13 +10,20 @@
 #include <omp.h>
 #include <opencv2/imgproc.hpp>
 
+#include "costs/image_planes.hpp"
+#include "costs/subpixel_volume.hpp"
 #include "fdp_stereo/image_preparation.hpp"
+#include "fdp_stereo/io.hpp"
 #include "fdp_stereo/scaling.hpp"
+#include "images/blind_pixels.hpp"
+#include "refinement/hidden_pixels.hpp"
 
 namespace fdp_stereo {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr int kSensorReachPx = 16;  ///< how far around a seed another sensor vouches for what the cameras do not see
 
 /// Times one stage after another.
 class StageClock {
@@ -33,71 +40,72 @@ class StageClock {
   Clock::time_point start_;
 };
 
-/// Uses a number of OpenMP threads for as long as it lives.
+/// Uses a number of threads, OpenCV's among them, for as long as it lives. OpenCV has one number for the process.
 class ThreadScope {
  public:
-  explicit ThreadScope(int threads) : before_(omp_get_max_threads()) {
+  explicit ThreadScope(int threads) : before_(omp_get_max_threads()), opencv_before_(cv::getNumThreads()) {
     omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs());
+    cv::setNumThreads(std::min(omp_get_max_threads(), cv::getNumberOfCPUs()));  // it warns of more
   }
-  ~ThreadScope() { omp_set_num_threads(before_); }
+  ~ThreadScope() {
+    omp_set_num_threads(before_);
+    cv::setNumThreads(opencv_before_);
+  }
   ThreadScope(const ThreadScope&) = delete;
   ThreadScope& operator=(const ThreadScope&) = delete;
 
  private:
-  int before_;
+  int before_, opencv_before_;
 };
-
-std::unique_ptr<Optimizer> makeOptimizer(const PipelineParams& params) {
-  switch (params.optimizer) {
-    case OptimizerType::kWinnerTakesAll:
-      return std::make_unique<WinnerTakesAll>(params.winner_takes_all);
-    case OptimizerType::kSemiGlobal:
-      return std::make_unique<SemiGlobal>(params.semi_global);
-    case OptimizerType::kLocalExpansion:
-      return std::make_unique<LocalExpansion>(params.local_expansion, params.semi_global);
-  }
-  throw std::invalid_argument("optimizer.type " + std::to_string(static_cast<int>(params.optimizer)) + ": unknown");
-}
-
-/// Are the parameters of the optimizer and its choice the same?
-bool sameOptimizer(PipelineParams a, PipelineParams b) {
-  const std::vector<ParamRef> first = paramList(a);
-  const std::vector<ParamRef> second = paramList(b);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const std::string stage = first[i].key.substr(0, first[i].key.find('.'));
-    const bool counts =
-        stage == "optimizer" || stage == "winner_takes_all" || stage == "semi_global" || stage == "local_expansion";
-    if (counts && toString(first[i]) != toString(second[i])) return false;
-  }
-  return true;
-}
 
 bool wantsQuasiDense(const PipelineParams& params) {
   return params.disparity_propagation.enabled && params.quasi_dense.enabled;
 }
 
-/// The finest cost step with which a path cost still fits the bits of the volume.
-float costStep(const PipelineParams& params, const Optimizer& optimizer) {
-  const double steps = params.matching_cost.bits == 8 ? 252.0 : 8188.0;
-  double headroom = optimizer.costHeadroom();
-  if (wantsQuasiDense(params)) headroom = std::max(headroom, SemiGlobal(params.semi_global).costHeadroom());
-  return static_cast<float>((maxMatchingCost(params.matching_cost) + headroom) / steps);
+bool needsSemiGlobal(const PipelineParams& params) {
+  return params.optimizer == OptimizerType::kSemiGlobal || wantsQuasiDense(params) ||
+         (params.optimizer == OptimizerType::kLocalExpansion &&
+          params.local_expansion.initialization == PlaneInitialization::kSemiGlobal);
 }
 
-void checkMemory(const PipelineParams& params, const Optimizer& optimizer, cv::Size size, DisparityRange search) {
+/// Local expansion that reads the costs as they are gets all their bits.
+CostScale costScale(const PipelineParams& params) {
+  constexpr double kAllLevels = 1000.0;
+  const double largest = maxMatchingCost(params.matching_cost);
+  const double penalties = needsSemiGlobal(params) ? penaltiesOf(params.semi_global) : 0.0;
+  const bool planes = params.optimizer == OptimizerType::kLocalExpansion && params.local_expansion.disparity_steps == 1;
+  return planes ? fitCostScale(largest, penalties, kAllLevels) : fitCostScale(largest, penalties);
+}
+
+/// Bytes that the optimiser and the quasi-dense matching need beside the volume for every cost in it.
+double bytesBeside(const PipelineParams& params) {
+  double bytes = params.optimizer == OptimizerType::kWinnerTakesAll ? 0.0 : SemiGlobalMatcher::kBytesPerCost;
+  if (params.optimizer == OptimizerType::kLocalExpansion) {
+    bytes = std::max(bytes, bytesPerCost(params.local_expansion));
+  }
+  return std::max(bytes,
+                  wantsQuasiDense(params) ? SemiGlobalMatcher::kBytesPerCost / params.quasi_dense.row_step : 0.0);
+}
+
+void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange search) {
   const double pixels = static_cast<double>(size.width) * size.height;
   const double cells = pixels * (search.count + CostVolume::kPadding);
-  double beside = optimizer.bytesPerCost();
-  if (wantsQuasiDense(params)) {
-    beside = std::max(beside, SemiGlobal(params.semi_global).bytesPerCost() / params.quasi_dense.row_step);
-  }
-  const double mb = cells * (params.matching_cost.bits / 8.0 + beside) / 1e6;
+  const double own = costScale(params).depth == CostVolume::Depth::kU8 ? 1.0 : 2.0;
+  const double mb = cells * (own + bytesBeside(params)) / 1e6;
   if (mb <= params.max_memory_mb) return;
   throw std::invalid_argument(
       "a pair of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " with " +
       std::to_string(search.count) + " disparities needs about " + std::to_string(static_cast<int>(mb)) +
       " MB, above pipeline.max_memory_mb = " + std::to_string(static_cast<int>(params.max_memory_mb)) +
-      ": reduce search.num_disparities or raise the limit");
+      ": reduce search.num_disparities or pipeline.scale, or raise the limit");
+}
+
+/// 0..1, the larger the worse the best other answer is.
+cv::Mat confidenceOf(const cv::Mat& margin) {
+  constexpr double kTypicalMargin = 0.25;  // cost
+  cv::Mat confidence;
+  cv::exp(margin * (-1.0 / kTypicalMargin), confidence);
+  return 1.0 - confidence;
 }
 
 }  // namespace
@@ -108,125 +116,171 @@ SparseDisparity allSeeds(const PipelineResult& result) {
   return all;
 }
 
-struct Pipeline::Buffers {
+/// What is kept from pair to pair.
+struct Pipeline::State {
+  RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
   CostVolume volume;
+  SemiGlobalMatcher semi_global;
 };
 
-Pipeline::Pipeline(const PipelineParams& params) : buffers_(std::make_unique<Buffers>()) { setParams(params); }
+/// What the stages of one run hand on.
+struct Pipeline::Frame {
+  StereoPair pair;  ///< of the size that is matched; the right view aligned
+  DisparityRange search;
+  cv::Mat guide;  ///< left, CV_8UC1
+  cv::Mat blind;  ///< CV_8UC1, 255 where the left view holds no information
+  OptimizerOutput optimized;
+};
+
+Pipeline::Pipeline(const PipelineParams& params) : state_(std::make_unique<State>()) { setParams(params); }
 Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 void Pipeline::setParams(const PipelineParams& params) {
   validate(params);
-  // An optimizer that stays keeps what it has learnt from earlier frames.
-  if (!optimizer_ || !sameOptimizer(params_, params)) optimizer_ = makeOptimizer(params);
   params_ = params;
 }
 
-void Pipeline::reset() {
-  row_alignment_.reset();
-  optimizer_->reset();
-}
+void Pipeline::reset() { state_->row_alignment.reset(); }
 
 PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Seeds& external,
                              const std::atomic<bool>* cancel) {
   const ThreadScope threads(params_.threads);
   PipelineResult result;
   StageClock clock(result.times);
-  StereoPair pair = prepareImages(left, right);
-  const cv::Mat given_left = pair.left;
-  const Scaling scaling(given_left.size(), params_.scale);
-  pair = scaling.shrink(pair);
-  const DisparityRange search = scaling.shrink(params_.search);
-  checkMemory(params_, *optimizer_, pair.left.size(), search);
+
+  const StereoPair given = prepareImages(left, right);
+  const Scaling scaling(given.left.size(), params_.scale);
+  Frame frame{scaling.shrink(given), scaling.shrink(params_.search), {}, {}, {}};
+  checkMemory(params_, frame.pair.left.size(), frame.search);
   clock.done("image_preparation");
 
-  FeatureMatching features = matchFeatures(pair, search, params_.feature_matching);
+  FeatureMatching features = matchFeatures(frame.pair, frame.search, params_.feature_matching);
   result.matches = std::move(features.matches);
   result.feature_note = std::move(features.note);
   clock.done("feature_matching");
 
-  result.row_alignment = alignPair(result.matches, pair);
+  result.row_alignment = alignPair(result.matches, frame.pair);
   clock.done("row_alignment");
 
-  CostVolume& volume = buffers_->volume;
-  buffers_->matching_cost.compute(pair, search, params_.matching_cost, costStep(params_, *optimizer_), volume);
+  state_->matching_cost.compute(frame.pair, frame.search, params_.matching_cost, costScale(params_), state_->volume);
   clock.done("matching_cost");
 
-  const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
-  SparseDisparity sparse =
-      buildSparseDisparity(aligned, scaling.shrink(external), pair, search, params_.sparse_disparity);
-  result.seeds = std::move(sparse.seeds);
-  result.rejected_seeds = std::move(sparse.rejected);
+  buildSeeds(frame, scaling.shrink(external), result);
   clock.done("sparse_disparity");
 
-  std::vector<SeedPrior> priors;
-  if (params_.disparity_propagation.enabled) {
-    priors.push_back({result.seeds, params_.disparity_propagation});
-    result.propagated_share = propagateDisparity(result.seeds, pair.left, params_.disparity_propagation, volume);
-  }
+  spreadSeeds(frame, result, state_->volume);
   clock.done("disparity_propagation");
 
-  if (wantsQuasiDense(params_)) {
-    result.quasi_dense_seeds = matchQuasiDense(pair, volume);
-    clock.done("quasi_dense_matching");
-    priors.push_back({result.quasi_dense_seeds, surfacesOf(params_.quasi_dense)});
-    const double share = propagateDisparity(result.quasi_dense_seeds, pair.left, priors.back().params, volume);
-    result.propagated_share = std::max(result.propagated_share, share);
-    clock.done("quasi_dense_propagation");
-  }
-
-  OptimizerOutput optimized;  // its maps become those of the result
-  optimizer_->optimize({volume, pair, result.seeds, cancel, &params_.matching_cost, progress_, priors}, optimized);
-  result.energies = optimized.energies;
+  optimize(frame, result, cancel);
   clock.done("optimizer");
 
-  pair = {pair.left, {}, {}, {}};  // the other images are not needed any more
-  postProcess(pair.left, optimized, result);
-  if (!scaling.identity()) restoreSize(scaling, pair.left, given_left, result);
-  clock.done("post_processing");
+  refine(frame, result);
+  if (!scaling.identity()) restoreSize(scaling, frame.pair.left, given.left, result);
+  clock.done("refinement");
   return result;
-}
-
-Seeds Pipeline::matchQuasiDense(const StereoPair& pair, const CostVolume& volume) {
-  if (auto* shared = dynamic_cast<SemiGlobal*>(optimizer_.get())) {  // one set of buffers for both
-    return quasiDenseSeeds(volume, pair, params_.quasi_dense, *shared);
-  }
-  SemiGlobal own(params_.semi_global);
-  return quasiDenseSeeds(volume, pair, params_.quasi_dense, own);
 }
 
 RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
   if (!params_.row_alignment.enabled) return {};
   const cv::Size size = pair.left.size();
-  RowAlignment alignment = row_alignment_.update(matches, size, params_.row_alignment);
+  RowAlignment alignment = state_->row_alignment.update(matches, size, params_.row_alignment);
   const bool shared = pair.right.data == pair.right_grey.data;
   pair.right = alignRows(pair.right, alignment.model);
   pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);
   return alignment;
 }
 
-void Pipeline::postProcess(const cv::Mat& left, OptimizerOutput& optimized, PipelineResult& result) const {
-  cv::Mat& disparity = optimized.disparity_left;
-  if (params_.left_right_check.enabled && !optimized.disparity_right.empty()) {
-    checkLeftRight(disparity, optimized.disparity_right, params_.left_right_check);
+/// Seeds of the features and of other sensors, and those of a rough first matching.
+void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result) {
+  const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
+  SparseDisparity sparse = buildSparseDisparity(aligned, external, frame.pair, frame.search, params_.sparse_disparity);
+  result.seeds = std::move(sparse.seeds);
+  result.rejected_seeds = std::move(sparse.rejected);
+  cv::Mat buffer;
+  frame.guide = eightBitGrey(frame.pair.left, frame.pair.left_grey, buffer);
+  frame.blind = blindPixels(frame.guide);
+  for (const Seed& seed : result.seeds) {  // another sensor sees where the cameras do not
+    if (seed.source == SeedSource::kFeature) continue;
+    cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);
   }
-  optimized.disparity_right.release();
+  if (!wantsQuasiDense(params_)) return;
+  result.quasi_dense_seeds =
+      quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
+}
+
+/// Spreads the seeds in costs of the left view, or of the right one, mirrored.
+void Pipeline::spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume) {
+  if (!params_.disparity_propagation.enabled) return;
+  const DisparityAxis axis{frame.search.min, 1};
+  result.propagated_share =
+      propagateDisparity(result.seeds, frame.pair.left, params_.disparity_propagation, axis, volume);
+  if (!wantsQuasiDense(params_)) return;
+  const double share =
+      propagateDisparity(result.quasi_dense_seeds, frame.pair.left, surfacesOf(params_.quasi_dense), axis, volume);
+  result.propagated_share = std::max(result.propagated_share, share);
+}
+
+void Pipeline::optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel) {
+  switch (params_.optimizer) {
+    case OptimizerType::kWinnerTakesAll:
+      return takeWinners(state_->volume, params_.winner_takes_all, frame.optimized);
+    case OptimizerType::kSemiGlobal:
+      return state_->semi_global.match(state_->volume, frame.guide, params_.semi_global, frame.optimized);
+    case OptimizerType::kLocalExpansion:
+      return expandPlanes(frame, result, cancel);
+  }
+}
+
+/// Local expansion from the disparities of semi-global matching, on costs between whole disparities.
+void Pipeline::expandPlanes(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel) {
+  OptimizerOutput initial;
+  if (params_.local_expansion.initialization == PlaneInitialization::kSemiGlobal) {
+    state_->semi_global.match(state_->volume, frame.guide, params_.semi_global, initial);
+  }
+  const auto finer_costs = [&](ExpandedView side, int steps, CostVolume& volume) {
+    const bool left = side == ExpandedView::kLeft;
+    const StereoPair pair = left ? frame.pair : mirrorPair(frame.pair);
+    computeSubpixelVolume(pair, frame.search, params_.matching_cost, steps, volume);
+    const auto seen = [&](const Seeds& seeds) { return left ? seeds : mirrorSeeds(seeds, pair.left.cols); };
+    if (!params_.disparity_propagation.enabled) return;
+    const DisparityAxis axis{frame.search.min, steps};
+    propagateDisparity(seen(result.seeds), pair.left, params_.disparity_propagation, axis, volume);
+    if (!wantsQuasiDense(params_)) return;
+    propagateDisparity(seen(result.quasi_dense_seeds), pair.left, surfacesOf(params_.quasi_dense), axis, volume);
+  };
+  const LocalExpansionInput input{state_->volume, frame.pair, result.seeds, initial, finer_costs, cancel, progress_};
+  expandLocally(input, params_.local_expansion, frame.optimized);
+  result.energies = frame.optimized.energies;
+}
+
+/// What is not known goes; the rest is filtered, and filled where that is wanted.
+void Pipeline::refine(Frame& frame, PipelineResult& result) const {
+  cv::Mat& disparity = frame.optimized.disparity_left;
+  const cv::Mat& left = frame.pair.left;
+  dropHidden(disparity);
+  if (params_.left_right_check.enabled && !frame.optimized.disparity_right.empty()) {
+    checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
+  }
   filterSpeckles(disparity, params_.speckle_filter);
-  const cv::Mat holes = ~(disparity == disparity);  // OpenCV finds no NaN by != where it compares vectors
+  const cv::Mat holes = noneMask(disparity);
   if (params_.hole_filling.enabled) fillHoles(disparity);
   filterWeightedMedian(disparity, left, holes, params_.weighted_median);
   smoothDisparity(disparity, left, params_.disparity_smoothing);
+  // Where nothing is to be seen the surroundings may still explain it: a guess, as good as any other filling.
+  if (!params_.hole_filling.enabled) disparity.setTo(kInvalidDisparity, frame.blind);
   result.disparity = disparity;
-  result.confidence = optimized.confidence;
-  result.confidence.setTo(0.0F, ~(disparity == disparity));
+  result.confidence = confidenceOf(frame.optimized.margin);
+  result.confidence.setTo(0.0F, holes | frame.blind);
 }
 
 void Pipeline::restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given,
                            PipelineResult& result) const {
   result.disparity = scaling.grow(result.disparity, matched, given, params_.search);
   cv::resize(result.confidence, result.confidence, given.size(), 0.0, 0.0, cv::INTER_LINEAR);
-  result.confidence.setTo(0.0F, ~(result.disparity == result.disparity));
+  result.confidence.setTo(0.0F, noneMask(result.disparity));
   result.matches = scaling.grow(std::move(result.matches));
   result.seeds = scaling.grow(std::move(result.seeds));
   result.quasi_dense_seeds = scaling.grow(std::move(result.quasi_dense_seeds));

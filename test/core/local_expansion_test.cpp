@@ -7,14 +7,16 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "costs/subpixel_volume.hpp"
+#include "fdp_stereo/io.hpp"
 #include "fdp_stereo/matching_cost.hpp"
+#include "fdp_stereo/semi_global.hpp"
 #include "optimizers/local_expansion/post_processing.hpp"
+#include "reference/random_images.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -45,7 +47,9 @@ struct Scene {
   cv::Mat truth;
   CostVolume volume;
   MatchingCostParams cost;
+  CostScale scale;
   Seeds seeds;
+  OptimizerOutput initial;
 
   explicit Scene(int seed = 1) : truth(kHeight, kWidth, CV_32FC1) {
     pair.right = texture(seed);
@@ -62,10 +66,17 @@ struct Scene {
     cv::cvtColor(pair.left, pair.left_grey, cv::COLOR_BGR2GRAY);
     cv::cvtColor(pair.right, pair.right_grey, cv::COLOR_BGR2GRAY);
     cost.census = {5, 5};
-    const double headroom = SemiGlobal(SemiGlobalParams{}).costHeadroom();
-    computeMatchingCost(pair, kRange, cost, static_cast<float>((maxMatchingCost(cost) + headroom) / 252.0), volume);
+    scale = fitCostScale(maxMatchingCost(cost), penaltiesOf(SemiGlobalParams{}));
+    computeMatchingCost(pair, kRange, cost, scale, volume);
   }
-  OptimizerInput input() const { return {volume, pair, seeds, nullptr, &cost, {}, {}}; }
+
+  LocalExpansionInput input() const {
+    const auto finer_costs = [this](ExpandedView side, int steps, CostVolume& finer) {
+      computeSubpixelVolume(side == ExpandedView::kLeft ? pair : mirrorPair(pair), volume.range(), cost, steps, finer);
+    };
+    return {volume, pair, seeds, initial, finer_costs, nullptr, {}};
+  }
+  void start() { SemiGlobalMatcher().match(volume, pair.left_grey, SemiGlobalParams{}, initial); }
 };
 
 LocalExpansionParams testParams() {
@@ -81,10 +92,11 @@ LocalExpansionParams testParams() {
   return params;
 }
 
-OptimizerOutput run(const Scene& scene, const LocalExpansionParams& params) {
-  LocalExpansion optimizer(params, SemiGlobalParams{});
+/// From the disparities of semi-global matching, or from nothing.
+OptimizerOutput run(Scene scene, const LocalExpansionParams& params) {
+  if (params.initialization == PlaneInitialization::kSemiGlobal) scene.start();
   OptimizerOutput output;
-  optimizer.optimize(scene.input(), output);
+  expandLocally(scene.input(), params, output);
   return output;
 }
 
@@ -102,16 +114,12 @@ double badShare(const Scene& scene, const cv::Mat& disparity, float limit) {
   return static_cast<double>(bad) / count;
 }
 
-bool sameBits(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
-}
-
 TEST(LocalExpansion, FindsSlantedPlanes) {
   const Scene scene;
   const OptimizerOutput output = run(scene, testParams());
   EXPECT_LT(badShare(scene, output.disparity_left, 0.5F), 0.04);
   EXPECT_EQ(output.disparity_right.size(), output.disparity_left.size());
-  EXPECT_EQ(cv::countNonZero(output.disparity_left != output.disparity_left), 0);
+  EXPECT_EQ(cv::countNonZero(noneMask(output.disparity_left)), 0);
 }
 
 TEST(LocalExpansion, CostsBetweenPixelsAreMorePrecise) {
@@ -170,9 +178,9 @@ TEST(LocalExpansion, SameBitsForAnyNumberOfThreads) {
   for (const int threads : {2, 4}) {
     omp_set_num_threads(threads);
     const OptimizerOutput many = run(scene, params);
-    EXPECT_TRUE(sameBits(one.disparity_left, many.disparity_left)) << threads;
-    EXPECT_TRUE(sameBits(one.disparity_right, many.disparity_right)) << threads;
-    EXPECT_TRUE(sameBits(one.confidence, many.confidence)) << threads;
+    EXPECT_TRUE(reference::sameBits(one.disparity_left, many.disparity_left)) << threads;
+    EXPECT_TRUE(reference::sameBits(one.disparity_right, many.disparity_right)) << threads;
+    EXPECT_TRUE(reference::sameBits(one.margin, many.margin)) << threads;
     EXPECT_EQ(one.energies, many.energies) << threads;
   }
   omp_set_num_threads(before);
@@ -184,18 +192,18 @@ TEST(LocalExpansion, SeedChangesTheNumbersNotTheAnswer) {
   const OptimizerOutput one = run(scene, params);
   params.seed = 7;
   const OptimizerOutput other = run(scene, params);
-  EXPECT_FALSE(sameBits(one.disparity_left, other.disparity_left));
+  EXPECT_FALSE(reference::sameBits(one.disparity_left, other.disparity_left));
   EXPECT_NEAR(one.energies.back(), other.energies.back(), 0.01 * one.energies.back());
 }
 
 TEST(LocalExpansion, CancelledRunReturnsTheInitialPlanes) {
-  const Scene scene;
+  Scene scene;
+  scene.start();
   const std::atomic<bool> cancel{true};
-  OptimizerInput input = scene.input();
+  LocalExpansionInput input = scene.input();
   input.cancel = &cancel;
-  LocalExpansion optimizer(testParams(), SemiGlobalParams{});
   OptimizerOutput output;
-  optimizer.optimize(input, output);
+  expandLocally(input, testParams(), output);
   EXPECT_EQ(output.energies.size(), 1U);
   EXPECT_LT(badShare(scene, output.disparity_left, 1.0F), 0.1);
 }
@@ -212,7 +220,7 @@ TEST(LocalExpansion, OutOfTimeIsLikeCancelled) {
 
 TEST(LocalExpansion, ReportsEveryRoundOfBothViews) {
   const Scene scene;
-  OptimizerInput input = scene.input();
+  LocalExpansionInput input = scene.input();
   std::vector<int> done;
   int all = 0;
   input.progress = [&](int step, int steps, double energy) {
@@ -220,9 +228,8 @@ TEST(LocalExpansion, ReportsEveryRoundOfBothViews) {
     all = steps;
     EXPECT_GT(energy, 0.0);
   };
-  LocalExpansion optimizer(testParams(), SemiGlobalParams{});
   OptimizerOutput output;
-  optimizer.optimize(input, output);
+  expandLocally(input, testParams(), output);
   EXPECT_EQ(done, (std::vector<int>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(all, 6);
 }
@@ -235,28 +242,11 @@ TEST(LocalExpansion, StopsWhenARoundGainsLittle) {
   EXPECT_LT(run(scene, params).energies.size(), 8U);
 }
 
-TEST(LocalExpansion, WarmStartBeginsWithThePreviousPlanes) {
-  const Scene scene;
-  LocalExpansionParams params = testParams();
-  params.warm_start = true;
-  LocalExpansion optimizer(params, SemiGlobalParams{});
-  OptimizerOutput first;
-  OptimizerOutput second;
-  optimizer.optimize(scene.input(), first);
-  optimizer.optimize(scene.input(), second);
-  EXPECT_LT(second.energies.front(), first.energies.front());
-  EXPECT_LE(second.energies.back(), 1.005 * first.energies.back());
-  optimizer.reset();
-  OptimizerOutput third;
-  optimizer.optimize(scene.input(), third);
-  EXPECT_TRUE(sameBits(first.disparity_left, third.disparity_left));
-}
-
 TEST(LocalExpansion, MirroredAndExchangedImagesExchangeTheViews) {
   const Scene scene;
   Scene other;
-  other.pair = local_expansion::mirrorPair(scene.pair);
-  computeMatchingCost(other.pair, kRange, other.cost, scene.volume.step(), other.volume);
+  other.pair = mirrorPair(scene.pair);
+  computeMatchingCost(other.pair, kRange, other.cost, scene.scale, other.volume);
   const OptimizerOutput a = run(scene, testParams());
   const OptimizerOutput b = run(other, testParams());
   cv::Mat mirrored;
@@ -279,7 +269,7 @@ TEST(LocalExpansion, SmallAndDegenerateInput) {
       scene.pair.right = scene.pair.left.clone();
       scene.pair.left_grey = cv::Mat(size, CV_8UC1, cv::Scalar(90));
       scene.pair.right_grey = scene.pair.left_grey.clone();
-      computeMatchingCost(scene.pair, range, scene.cost, scene.volume.step(), scene.volume);
+      computeMatchingCost(scene.pair, range, scene.cost, scene.scale, scene.volume);
       for (const int steps : {1, 3}) {
         LocalExpansionParams params = testParams();
         params.disparity_steps = steps;
@@ -295,21 +285,20 @@ TEST(LocalExpansion, WrongInputIsRefused) {
   Scene scene;
   LocalExpansionParams params = testParams();
   params.disparity_steps = 2;
-  LocalExpansion optimizer(params, SemiGlobalParams{});
   OptimizerOutput output;
-  OptimizerInput input = scene.input();
-  input.matching_cost = nullptr;
-  EXPECT_THROW(optimizer.optimize(input, output), std::invalid_argument);
+  LocalExpansionInput input = scene.input();
+  input.finer_costs = nullptr;
+  EXPECT_THROW(expandLocally(input, params, output), std::invalid_argument);
   scene.pair.left = cv::Mat(3, 3, CV_8UC3, cv::Scalar(0, 0, 0));
-  EXPECT_THROW(run(scene, testParams()), std::invalid_argument);
+  EXPECT_THROW(expandLocally(scene.input(), testParams(), output), std::invalid_argument);
 }
 
 TEST(SubpixelVolume, WholeDisparitiesAreTheMatchingCost) {
   const Scene scene;
   CostVolume fine;
   CostVolume whole;
-  local_expansion::computeSubpixelVolume(scene.pair, kRange, scene.cost, 3, fine);
-  computeMatchingCost(scene.pair, kRange, scene.cost, fine.step(), whole);
+  computeSubpixelVolume(scene.pair, kRange, scene.cost, 3, fine);
+  computeMatchingCost(scene.pair, kRange, scene.cost, {fine.depth(), fine.step()}, whole);
   ASSERT_EQ(fine.range().count, 3 * (kRange.count - 1) + 1);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -326,7 +315,7 @@ TEST(SubpixelVolume, TheMinimumLiesBetweenThePixels) {
                  cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
   cv::cvtColor(scene.pair.left, scene.pair.left_grey, cv::COLOR_BGR2GRAY);
   CostVolume fine;
-  local_expansion::computeSubpixelVolume(scene.pair, kRange, scene.cost, 2, fine);
+  computeSubpixelVolume(scene.pair, kRange, scene.cost, 2, fine);
   int right = 0;
   int count = 0;
   for (int y = 4; y < kHeight - 4; ++y) {
@@ -344,7 +333,7 @@ TEST(SubpixelVolume, TheMinimumLiesBetweenThePixels) {
 TEST(SubpixelVolume, MirroredVolumeIsThatOfTheRightView) {
   const Scene scene;
   CostVolume mirrored;
-  local_expansion::mirrorVolume(scene.volume, mirrored);
+  mirrorVolume(scene.volume, mirrored);
   for (int y = 0; y < kHeight; y += 5) {
     for (int x = 0; x < kWidth - kRange.count; ++x) {
       for (int d = 0; d < kRange.count; ++d) {

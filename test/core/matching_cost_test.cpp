@@ -19,21 +19,21 @@ constexpr double kTolerance = 0.02;
 // The integer theta of 8-bit volumes.
 constexpr double kThetaError = 6e-4;
 
-MatchingCostParams paramsOf(MatchingCostType type, int scales = 1, int bits = 16) {
+MatchingCostParams paramsOf(MatchingCostType type, int scales = 1) {
   MatchingCostParams params;
   params.type = type;
   params.scales = scales;
-  params.bits = bits;
   return params;
 }
 
-float stepOf(const MatchingCostParams& params) {
-  return static_cast<float>(maxMatchingCost(params) / (params.bits == 8 ? 200.0 : 4000.0));
+CostScale scaleOf(const MatchingCostParams& params, int bits = 16) {
+  const auto step = static_cast<float>(maxMatchingCost(params) / (bits == 8 ? 200.0 : 4000.0));
+  return {bits == 8 ? CostVolume::Depth::kU8 : CostVolume::Depth::kU16, step};
 }
 
-CostVolume volumeOf(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params) {
+CostVolume volumeOf(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, int bits = 16) {
   CostVolume volume;
-  computeMatchingCost(pair, range, params, stepOf(params), volume);
+  computeMatchingCost(pair, range, params, scaleOf(params, bits), volume);
   return volume;
 }
 
@@ -106,14 +106,13 @@ TEST_P(EveryType, EqualsTheReference) {
 
 TEST_P(EveryType, EightBitsAreSixteenBitsRounded) {
   const StereoPair pair = prepareImages(reference::texture(7, 40, CV_8UC3, 5), reference::texture(7, 40, CV_8UC3, 6));
-  const MatchingCostParams wide = paramsOf(GetParam(), 1, 16);
-  const MatchingCostParams narrow = paramsOf(GetParam(), 1, 8);
-  const CostVolume exact = volumeOf(pair, {0, 20}, wide);
-  const CostVolume rounded = volumeOf(pair, {0, 20}, narrow);
+  const MatchingCostParams params = paramsOf(GetParam());
+  const CostVolume exact = volumeOf(pair, {0, 20}, params, 16);
+  const CostVolume rounded = volumeOf(pair, {0, 20}, params, 8);
   ASSERT_EQ(rounded.depth(), CostVolume::Depth::kU8);
   for (int x = 0; x < 40; ++x) {
     for (int i = 0; i < 20; ++i) {
-      ASSERT_NEAR(rounded.cost(3, x, i), exact.cost(3, x, i), 0.51 * (stepOf(narrow) + stepOf(wide)) + 2 * kThetaError);
+      ASSERT_NEAR(rounded.cost(3, x, i), exact.cost(3, x, i), 0.51 * (rounded.step() + exact.step()) + 2 * kThetaError);
     }
   }
 }
@@ -123,8 +122,8 @@ TEST_P(EveryType, CostsStayBelowTheirMaximum) {
   black.col(11).setTo(255);
   const cv::Mat white = ~black;
   for (const int bits : {8, 16}) {
-    const MatchingCostParams params = paramsOf(GetParam(), 3, bits);
-    const CostVolume volume = volumeOf(prepareImages(black, white), {0, 12}, params);
+    const MatchingCostParams params = paramsOf(GetParam(), 3);
+    const CostVolume volume = volumeOf(prepareImages(black, white), {0, 12}, params, bits);
     EXPECT_LE(volume.maxRaw(), bits == 8 ? 200 : 4000);
     for (int i = 0; i < 12; ++i) EXPECT_LE(volume.raw(2, 11, i), volume.maxRaw());
     for (int i = 12; i < volume.stride(); ++i) EXPECT_GE(volume.raw(2, 11, i), volume.maxRaw()) << "padding never wins";
@@ -134,14 +133,14 @@ TEST_P(EveryType, CostsStayBelowTheirMaximum) {
 TEST_P(EveryType, ThreadsAndInstructionSetsAgree) {
   const StereoPair pair = prepareImages(reference::texture(13, 53, CV_8UC3, 7), reference::texture(13, 53, CV_8UC3, 8));
   for (const int bits : {8, 16}) {
-    const MatchingCostParams params = paramsOf(GetParam(), 3, bits);
+    const MatchingCostParams params = paramsOf(GetParam(), 3);
     omp_set_num_threads(1);
     limitSimdLevel(SimdLevel::kBaseline);
-    const CostVolume expected = volumeOf(pair, {-2, 37}, params);
+    const CostVolume expected = volumeOf(pair, {-2, 37}, params, bits);
     omp_set_num_threads(3);
     for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
       limitSimdLevel(level);
-      expectEqual(volumeOf(pair, {-2, 37}, params), expected);
+      expectEqual(volumeOf(pair, {-2, 37}, params, bits), expected);
     }
     omp_set_num_threads(omp_get_num_procs());
   }
@@ -217,7 +216,7 @@ TEST(MatchingCost, LetsGoOfTheImages) {
   MatchingCost matching_cost;
   CostVolume volume;
   const MatchingCostParams params = paramsOf(MatchingCostType::kRhoCensus, 3);
-  matching_cost.compute(pair, {0, 8}, params, stepOf(params), volume);
+  matching_cost.compute(pair, {0, 8}, params, scaleOf(params), volume);
   EXPECT_EQ(owners(), before);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/pipeline.hpp"
+#include "fdp_stereo/io.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -9,6 +10,8 @@
 
 #include "evaluation/evaluation.hpp"
 #include "evaluation/scene.hpp"
+#include "fdp_stereo/cost_scale.hpp"
+#include "fdp_stereo/io.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
 #include "simd/simd.hpp"
@@ -38,7 +41,7 @@ TEST_P(EveryPreset, FindsTheRenderedDisparities) {
   params.hole_filling.enabled = true;
   const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right);
   const DisparityErrors errors = evaluateDisparity(result.disparity, rendered().truth, rendered().visible);
-  EXPECT_EQ(errors.density, 100.0);
+  EXPECT_GT(errors.density, 99.5);
   EXPECT_LT(errors.bad[3], 4.0) << "share off by more than 1 px";
   EXPECT_LT(errors.bad[1], 8.0) << "share off by more than a quarter";
 }
@@ -191,29 +194,84 @@ TEST(Pipeline, PlanesPresetsFindTheRenderedDisparities) {
     params.search = {0, 12};
     const PipelineResult result = Pipeline(params).run(pair.left, pair.right);
     const DisparityErrors errors = evaluateDisparity(result.disparity, pair.truth, pair.visible);
-    EXPECT_EQ(errors.density, 100.0) << preset;
+    EXPECT_GT(errors.density, 99.5) << preset;
     EXPECT_LT(errors.bad[3], 6.0) << preset << ": share off by more than 1 px";
   }
 }
 
-TEST(Pipeline, NewParametersOfOtherStagesLeaveThePlanesOfThePreviousFrame) {
-  const reference::RenderedPair pair = reference::renderPair(40, 60, 3, 8, 5);
-  PipelineParams params = loadPreset("accurate");
-  params.search = {0, 12};
-  params.local_expansion.warm_start = true;
-  params.local_expansion.initialization = PlaneInitialization::kRandom;
-  params.local_expansion.iterations = 1;
-  Pipeline pipeline(params);
-  const double first = pipeline.run(pair.left, pair.right).energies.front();
-  params.speckle_filter.max_size = 10;
-  pipeline.setParams(params);
-  const double second = pipeline.run(pair.left, pair.right).energies.front();
-  EXPECT_LT(second, first) << "the start knows planes from before";
-  params.local_expansion.lambda += 0.01;
-  pipeline.setParams(params);
-  params.local_expansion.lambda -= 0.01;
-  pipeline.setParams(params);
-  EXPECT_EQ(pipeline.run(pair.left, pair.right).energies.front(), first) << "a new optimiser starts afresh";
+/// The share of pixels with an answer.
+double answered(const PipelineResult& result) {
+  return 1.0 - cv::countNonZero(noneMask(result.disparity)) / static_cast<double>(result.disparity.total());
+}
+
+TEST(Pipeline, SaysNothingWhereNothingIsSeen) {
+  for (const char* preset : {"fast", "accurate", "paper"}) {
+    for (const auto& [left, right] : {std::pair{0, 0}, {128, 128}, {255, 255}, {0, 255}}) {
+      PipelineParams params = loadPreset(preset);
+      params.search = {5, 16};
+      const cv::Size size(100, 60);
+      const PipelineResult result = Pipeline(params).run(cv::Mat(size, CV_8UC1, cv::Scalar(left)),
+                                                         cv::Mat(size, CV_8UC3, cv::Scalar::all(right)));
+      EXPECT_EQ(answered(result), 0.0) << preset << ' ' << left << ' ' << right;
+      EXPECT_EQ(cv::countNonZero(result.confidence), 0) << preset;
+      EXPECT_TRUE(result.seeds.empty() && result.quasi_dense_seeds.empty()) << preset;
+    }
+  }
+}
+
+TEST(Pipeline, ABlackBorderHoldsNoDisparityAndCostsThePictureNothing) {
+  const reference::RenderedPair pair = reference::renderPair(120, 220, 6, 15, 5);
+  PipelineParams params = loadPreset("fast");
+  params.search = {0, 32};
+  const cv::Rect inside(18, 12, 180, 96);
+  cv::Mat views[2] = {cv::Mat::zeros(pair.left.size(), pair.left.type()),
+                      cv::Mat::zeros(pair.left.size(), pair.left.type())};
+  pair.left(inside).copyTo(views[0](inside));
+  pair.right(inside).copyTo(views[1](inside));
+  const PipelineResult result = Pipeline(params).run(views[0], views[1]);
+  cv::Mat border(pair.left.size(), CV_8UC1, cv::Scalar(255));
+  border(inside).setTo(0);
+  EXPECT_EQ(cv::countNonZero(border & ~noneMask(result.disparity)), 0);
+  const cv::Rect seen(inside.x + 18, inside.y + 3, inside.width - 24, inside.height - 6);
+  const PipelineResult whole = Pipeline(params).run(pair.left, pair.right);
+  const auto bad = [&](const PipelineResult& of) {
+    return evaluateDisparity(of.disparity(seen).clone(), pair.truth(seen).clone(), pair.visible(seen).clone()).bad[3];
+  };
+  EXPECT_LE(bad(result), bad(whole) + 0.5);
+}
+
+TEST(Pipeline, FilledPixelsHaveNoConfidence) {
+  const reference::RenderedPair pair = reference::renderPair(120, 200, 6, 15, 5);
+  PipelineParams params = loadPreset("fast");
+  params.search = {0, 32};
+  const PipelineResult open = Pipeline(params).run(pair.left, pair.right);
+  params.hole_filling.enabled = true;
+  const PipelineResult filled = Pipeline(params).run(pair.left, pair.right);
+  EXPECT_EQ(answered(filled), 1.0);
+  const cv::Mat holes = noneMask(open.disparity);
+  ASSERT_GT(cv::countNonZero(holes), 0);
+  EXPECT_EQ(cv::countNonZero((filled.confidence > 0.0F) & holes), 0);
+  EXPECT_TRUE(reference::sameBits(filled.confidence, open.confidence));
+}
+
+TEST(Pipeline, LargePenaltiesDoNotCoarsenTheCosts) {
+  PipelineParams params = paramsOf("fast");
+  params.semi_global.p1 = 4.0;
+  params.semi_global.p2 = 60.0;
+  const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right);
+  EXPECT_LT(evaluateDisparity(result.disparity, rendered().truth, rendered().visible).bad[4], 25.0);
+  EXPECT_EQ(fitCostScale(1.7, 3.6).depth, CostVolume::Depth::kU8);
+  EXPECT_EQ(fitCostScale(1.7, 64.0).depth, CostVolume::Depth::kU16);
+  for (const double penalties : {0.0, 3.6, 20.0, 200.0}) {
+    EXPECT_GE(1.7 / fitCostScale(1.7, penalties).step, 48.0) << "levels of the cost";
+  }
+}
+
+TEST(Pipeline, CanBeMoved) {
+  Pipeline first(paramsOf("fast"));
+  const cv::Mat expected = first.run(rendered().left, rendered().right).disparity;
+  Pipeline second = std::move(first);
+  EXPECT_TRUE(reference::sameBits(second.run(rendered().left, rendered().right).disparity, expected));
 }
 
 TEST(Pipeline, RefusesWhatDoesNotFit) {

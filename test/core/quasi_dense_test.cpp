@@ -26,10 +26,10 @@ SemiGlobalParams penalties() {
   return params;
 }
 
-/// The rows that optimizeRows() takes, as an image or volume of their own.
+/// The rows that match() takes, as an image or volume of their own.
 cv::Mat rowsOf(const cv::Mat& image, int step) {
   cv::Mat rows;
-  for (int y = SemiGlobal::firstRow(image.rows, step); y < image.rows; y += step) rows.push_back(image.row(y));
+  for (int y = SemiGlobalMatcher::firstRow(image.rows, step); y < image.rows; y += step) rows.push_back(image.row(y));
   return rows;
 }
 
@@ -37,7 +37,7 @@ CostVolume rowsOf(const CostVolume& volume, int rows, int step) {
   CostVolume result;
   result.create(rows, volume.width(), volume.range(), volume.depth(), volume.step(), volume.maxRaw());
   result.clearPadding();
-  const int first = SemiGlobal::firstRow(volume.height(), step);
+  const int first = SemiGlobalMatcher::firstRow(volume.height(), step);
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < volume.width(); ++x) {
       for (int i = 0; i < volume.range().count; ++i) result.setRaw(y, x, i, volume.raw(first + y * step, x, i));
@@ -53,19 +53,14 @@ INSTANTIATE_TEST_SUITE_P(HeightsAndSteps, Rows,
 TEST_P(Rows, AreMatchedAsIfThereWereNoOthers) {
   const auto [height, step] = GetParam();
   const CostVolume volume = reference::randomVolume(height, 37, {0, 20}, CostVolume::Depth::kU8, 190, 3);
-  StereoPair pair;
-  pair.left = reference::texture(height, 37, CV_8UC1, 4);
-  const Seeds none;
+  const cv::Mat guide = reference::texture(height, 37, CV_8UC1, 4);
   OptimizerOutput actual;
-  SemiGlobal(penalties()).optimizeRows({volume, pair, none, nullptr, nullptr, {}, {}}, 4, step, actual);
+  SemiGlobalMatcher().match(volume, guide, penalties(), actual, step);
 
-  StereoPair fewer;
-  fewer.left = rowsOf(pair.left, step);
-  const CostVolume part = rowsOf(volume, fewer.left.rows, step);
-  SemiGlobalParams four = penalties();
-  four.paths = 4;
+  const cv::Mat fewer = rowsOf(guide, step);
+  const CostVolume part = rowsOf(volume, fewer.rows, step);
   OptimizerOutput expected;
-  SemiGlobal(four).optimize({part, fewer, none, nullptr, nullptr, {}, {}}, expected);
+  SemiGlobalMatcher().match(part, fewer, penalties(), expected);
   ASSERT_EQ(actual.disparity_left.size(), expected.disparity_left.size());
   EXPECT_EQ(reference::differingPixels(actual.disparity_left, expected.disparity_left), 0);
   EXPECT_EQ(reference::differingPixels(actual.disparity_right, expected.disparity_right), 0);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstring>
+
 #include <random>
 
 #include <opencv2/imgproc.hpp>
@@ -70,6 +72,15 @@ inline RenderedPair renderPair(int rows, int cols, int wall_px, int square_px, u
   pair.truth(square).setTo(square_px);
   pair.visible(square).setTo(255);
   return pair;
+}
+
+/// The same to the bit, NaN included.
+inline bool sameBits(const cv::Mat& a, const cv::Mat& b) {
+  if (a.size() != b.size() || a.type() != b.type()) return false;
+  for (int y = 0; y < a.rows; ++y) {
+    if (std::memcmp(a.ptr(y), b.ptr(y), a.cols * a.elemSize()) != 0) return false;
+  }
+  return true;
 }
 
 }  // namespace reference

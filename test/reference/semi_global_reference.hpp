@@ -22,9 +22,7 @@ inline std::vector<int> pathSums(const CostVolume& volume, const cv::Mat& grey, 
   const int p1 = static_cast<int>(std::lround(params.p1 / volume.step()));
   const auto at = [&](int x, int y) { return (static_cast<std::size_t>(y) * width + x) * count; };
   std::vector<int> sums(static_cast<std::size_t>(width) * height * count, 0);
-  std::vector<cv::Point> directions = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-  if (params.paths == 8) directions.insert(directions.end(), {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}});
-  for (const cv::Point r : directions) {
+  for (const cv::Point r : {cv::Point{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
     std::vector<int> path(sums.size(), 0);
     for (int j = 0; j < height; ++j) {
       for (int i = 0; i < width; ++i) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "parallel.hpp"
 #include "simd/census_kernels.hpp"
 
 namespace fdp_stereo {
@@ -95,10 +96,9 @@ void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, st
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {
   checkCensus(grey, params);
   codes.resize(grey.total());
-#pragma omp parallel for schedule(static)
-  for (int y = 0; y < grey.rows; ++y) {
+  parallelFor(grey.rows, [&](int y) {
     computeCensusRow(grey, params, y, codes.data() + static_cast<std::size_t>(y) * grey.cols);
-  }
+  });
 }
 
 }  // namespace fdp_stereo

@@ -19,8 +19,7 @@ void CostVolume::create(int height, int width, DisparityRange range, Depth depth
   step_ = step;
   max_raw_ = max_raw;
   stride_ = (range.count + kPadding - 1) / kPadding * kPadding;
-  const std::size_t words = (bytes() + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
-  if (words > data_.size()) data_ = std::vector<std::uint64_t>(words);
+  data_.reserve(bytes());
 }
 
 std::size_t CostVolume::bytes() const {

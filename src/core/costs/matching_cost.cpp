@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "costs/image_planes.hpp"
+#include "parallel.hpp"
 #include "simd/matching_cost_kernels.hpp"
 
 namespace fdp_stereo {
@@ -74,15 +75,15 @@ struct MatchingCost::Source {
   std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // 16-bit volumes
   std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
 
-  void load(const StereoPair& pair, const MatchingCostParams& params, float step);
+  void load(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale);
   /// Lets go of the images.
   void release();
   void loadCensus(const StereoPair& pair, const MatchingCostParams& params);
-  void loadTheta(const MatchingCostParams& params, float step);
+  void loadTheta(const MatchingCostParams& params, const CostScale& scale);
 };
 
 void MatchingCost::Source::loadCensus(const StereoPair& pair, const MatchingCostParams& params) {
-  checkCensus(pair.left_grey, params.census);  // here, for nothing may be thrown among threads
+  checkCensus(pair.left_grey, params.census);
   checkCensus(pair.right_grey, params.census);
   census = params.census;
   scales = std::clamp(params.scales, 1, 3);
@@ -96,14 +97,15 @@ void MatchingCost::Source::loadCensus(const StereoPair& pair, const MatchingCost
   }
 }
 
-void MatchingCost::Source::loadTheta(const MatchingCostParams& params, float step) {
+void MatchingCost::Source::loadTheta(const MatchingCostParams& params, const CostScale& scale) {
+  const float step = scale.step;
   // Fractional bits that keep the largest cost inside 16 bits.
   shift = 0;
   while (shift < 7 && maxMatchingCost(params) / step * (2 << shift) < 65535.0) ++shift;
   const double lambda = usesGradient(params.type) ? params.lambda_rho : params.lambda_ad;
   const double census_weight = usesCensus(params.type) ? 1.0 : 0.0;
   const double colour_weight = usesColour(params.type) ? (usesCensus(params.type) ? params.rho_weight : 1.0) : 0.0;
-  if (params.bits == 8) {
+  if (scale.depth == CostVolume::Depth::kU8) {
     rho_theta = makeTheta(kUnitsPerGreyLevel, lambda, colour_weight, step, shift);
     census_theta = makeTheta(kUnitsPerBit, params.lambda_census, census_weight, step, shift);
   } else {
@@ -112,7 +114,7 @@ void MatchingCost::Source::loadTheta(const MatchingCostParams& params, float ste
   }
 }
 
-void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams& params, float step) {
+void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale) {
   const cv::Mat& grey_left = eightBitGrey(pair.left, pair.left_grey, left_grey8);
   const cv::Mat& grey_right = eightBitGrey(pair.right, pair.right_grey, right_grey8);
   left.clear();
@@ -129,7 +131,7 @@ void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams
   }
   scales = 0;
   if (usesCensus(params.type)) loadCensus(pair, params);
-  loadTheta(params, step);
+  loadTheta(params, scale);
 }
 
 void MatchingCost::Source::release() {
@@ -255,20 +257,16 @@ void repeatPixels(int y, CostVolume& volume) {
 template <typename T>
 void fillVolume(const CostSource& source, const MatchingCostParams& params, CostVolume& volume) {
   const int width = volume.width();
-#pragma omp parallel
-  {
-    thread_local RowScratch scratch;  // keeps its memory
-#pragma omp for schedule(static)
-    for (int y = 0; y < volume.height(); ++y) {
-      loadRow(source, y, width, volume, scratch);
-      for (int x = 0; x < width; ++x) {
-        T* costs = volume.at<T>(y, x);
-        costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
-        repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
-      }
-      if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
+  const auto makeScratch = [] { return RowScratch{}; };
+  parallelFor(volume.height(), makeScratch, [&](int y, RowScratch& scratch) {
+    loadRow(source, y, width, volume, scratch);
+    for (int x = 0; x < width; ++x) {
+      T* costs = volume.at<T>(y, x);
+      costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
+      repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
     }
-  }
+    if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
+  });
 }
 
 }  // namespace
@@ -280,19 +278,20 @@ double maxMatchingCost(const MatchingCostParams& params) {
 
 MatchingCost::MatchingCost() : source_(std::make_unique<Source>()) {}
 MatchingCost::~MatchingCost() = default;
+MatchingCost::MatchingCost(MatchingCost&&) noexcept = default;
+MatchingCost& MatchingCost::operator=(MatchingCost&&) noexcept = default;
 
-void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
-                           CostVolume& volume) {
-  const int max_raw = static_cast<int>(std::lround(maxMatchingCost(params) / step));
-  const int largest = params.bits == 8 ? 255 : 65535;
-  if (!(step > 0.0F) || max_raw > largest) {
-    throw std::invalid_argument("matching cost step " + std::to_string(step) + ": the largest cost must fit " +
-                                std::to_string(params.bits) + " bits");
+void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params,
+                           const CostScale& scale, CostVolume& volume) {
+  const int max_raw = static_cast<int>(std::lround(maxMatchingCost(params) / scale.step));
+  const bool bytes = scale.depth == CostVolume::Depth::kU8;
+  if (!(scale.step > 0.0F) || max_raw > (bytes ? 255 : 65535)) {
+    throw std::invalid_argument("matching cost step " + std::to_string(scale.step) + ": the largest cost must fit " +
+                                (bytes ? "8" : "16") + " bits");
   }
-  const auto depth = params.bits == 8 ? CostVolume::Depth::kU8 : CostVolume::Depth::kU16;
-  volume.create(pair.left.rows, pair.left.cols, range, depth, step, max_raw);
-  source_->load(pair, params, step);
-  if (depth == CostVolume::Depth::kU8) {
+  volume.create(pair.left.rows, pair.left.cols, range, scale.depth, scale.step, max_raw);
+  source_->load(pair, params, scale);
+  if (bytes) {
     fillVolume<std::uint8_t>(*source_, params, volume);
   } else {
     fillVolume<std::uint16_t>(*source_, params, volume);
@@ -300,9 +299,9 @@ void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const M
   source_->release();
 }
 
-void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, float step,
-                         CostVolume& volume) {
-  MatchingCost().compute(pair, range, params, step, volume);
+void computeMatchingCost(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params,
+                         const CostScale& scale, CostVolume& volume) {
+  MatchingCost().compute(pair, range, params, scale, volume);
 }
 
 }  // namespace fdp_stereo

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-namespace fdp_stereo::local_expansion {
+namespace fdp_stereo {
 namespace {
 
 // result(x) = image(x - shift).
@@ -59,11 +59,9 @@ void mirrorCosts(const CostVolume& left, CostVolume& mirrored) {
 void computeSubpixelVolume(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, int steps,
                            CostVolume& volume) {
   constexpr float kLargestRaw = 252.0F;
-  MatchingCostParams bytes = params;
-  bytes.bits = 8;
-  const float step = static_cast<float>(maxMatchingCost(params)) / kLargestRaw;
+  const CostScale scale{CostVolume::Depth::kU8, static_cast<float>(maxMatchingCost(params)) / kLargestRaw};
   const DisparityRange entries{0, (range.count - 1) * steps + 1};
-  volume.create(pair.left.rows, pair.left.cols, entries, CostVolume::Depth::kU8, step, static_cast<int>(kLargestRaw));
+  volume.create(pair.left.rows, pair.left.cols, entries, scale.depth, scale.step, static_cast<int>(kLargestRaw));
   volume.clearPadding();
   CostVolume whole;
   for (int k = 0; k < steps; ++k) {
@@ -75,7 +73,7 @@ void computeSubpixelVolume(const StereoPair& pair, DisparityRange range, const M
       moved.right = shifted(pair.right, shift);
       moved.right_grey = shifted(pair.right_grey, shift);
     }
-    computeMatchingCost(moved, part, bytes, step, whole);
+    computeMatchingCost(moved, part, params, scale, whole);
     interleave(whole, steps, k, volume);
   }
 }
@@ -99,4 +97,9 @@ StereoPair mirrorPair(const StereoPair& pair) {
   return result;
 }
 
-}  // namespace fdp_stereo::local_expansion
+Seeds mirrorSeeds(Seeds seeds, int width) {
+  for (Seed& seed : seeds) seed.x = static_cast<float>(width - 1) - (seed.x - seed.d);
+  return seeds;
+}
+
+}  // namespace fdp_stereo

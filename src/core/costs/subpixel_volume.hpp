@@ -6,7 +6,7 @@
 #include "fdp_stereo/matching_cost.hpp"
 #include "fdp_stereo/types.hpp"
 
-namespace fdp_stereo::local_expansion {
+namespace fdp_stereo {
 
 /// Matching costs at fractions of a pixel: entry i of a pixel is the cost of disparity range.min + i / steps, up to
 /// range.max(). Between integers the right image is resampled (Lanczos) before colours, gradients and census codes are
@@ -21,5 +21,7 @@ void mirrorVolume(const CostVolume& left, CostVolume& mirrored);
 /// The pair seen from behind: left and right mirrored and exchanged. Its left view is the right view of `pair`, and
 /// disparities keep their sign.
 StereoPair mirrorPair(const StereoPair& pair);
+/// The seeds in such a pair of that width.
+Seeds mirrorSeeds(Seeds seeds, int width);
 
-}  // namespace fdp_stereo::local_expansion
+}  // namespace fdp_stereo

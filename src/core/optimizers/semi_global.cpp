@@ -8,49 +8,17 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <omp.h>
 
-#include "costs/image_planes.hpp"
+#include "fdp_stereo/buffer.hpp"
+#include "fdp_stereo/cost_scale.hpp"
 #include "optimizers/disparity_selection.hpp"
 #include "simd/semi_global_kernels.hpp"
 
 namespace fdp_stereo {
 namespace {
-
-/// Penalties in raw units; P2 by the grey difference between two pixels.
-template <typename T>
-struct Penalties {
-  T p1;
-  std::array<T, 256> p2;
-};
-
-template <typename T>
-Penalties<T> makePenalties(const SemiGlobalParams& params, float step) {
-  Penalties<T> penalties;
-  penalties.p1 = static_cast<T>(std::lround(params.p1 / step));
-  for (int difference = 0; difference < 256; ++difference) {
-    const double p2 = std::max(params.p1, params.p2 / (1.0 + params.p2_gradient * difference));
-    penalties.p2[difference] = static_cast<T>(std::lround(p2 / step));
-  }
-  return penalties;
-}
-
-void sweepRow(const SemiGlobalKernels& kernels, const SweepRow<std::uint8_t>& row, int paths, bool add) {
-  kernels.sweepRowU8(row, paths, add);
-}
-void sweepRow(const SemiGlobalKernels& kernels, const SweepRow<std::uint16_t>& row, int paths, bool add) {
-  kernels.sweepRowU16(row, paths, add);
-}
-
-/// Path costs of one sweep; keep their memory from image to image.
-template <typename T>
-struct SweepBuffers {
-  std::array<std::vector<T>, 2> rows;      // [path][pixel][slot] of this row and the one before
-  std::array<std::vector<T>, 2> smallest;  // [path][pixel], of each slot in them
-  std::vector<T> along;                    // two slots of the path along the row
-  std::vector<T> p2;                       // [path][x]
-};
 
 /// The rows of an image that take part: every step-th one.
 struct RowGrid {
@@ -64,103 +32,179 @@ struct RowGrid {
   int imageRow(int row) const { return first + row * step; }
 };
 
-/// One sweep over the rows, downwards from the top left or upwards from the bottom right: the paths from the
-/// predecessor in the row and from the row before.
+/// Penalties in raw units; P2 by the grey difference between two pixels.
 template <typename T>
-class Sweep {
+struct Penalties {
+  T p1;
+  std::array<T, 256> p2;
+
+  Penalties(const SemiGlobalParams& params, float step) : p1(static_cast<T>(std::lround(params.p1 / step))) {
+    for (int difference = 0; difference < 256; ++difference) {
+      const double jump = std::max(params.p1, params.p2 / (1.0 + params.p2_gradient * difference));
+      p2[difference] = static_cast<T>(std::lround(jump / step));
+    }
+  }
+};
+
+void follow(const PathBundle<std::uint8_t>& bundle, int lines, bool add) {
+  FDP_STEREO_SELECT(semiGlobalKernels).followU8(bundle, lines, add);
+}
+void follow(const PathBundle<std::uint16_t>& bundle, int lines, bool add) {
+  FDP_STEREO_SELECT(semiGlobalKernels).followU16(bundle, lines, add);
+}
+
+/// Memory of one run; kept from pair to pair.
+struct PathMemory {
+  Buffer sums;      // u16: rows x width x stride
+  Buffer across;    // P2 between (x - 1, y) and (x, y): rows x (width + 1)
+  Buffer down;      // P2 between (x, y - 1) and (x, y): (rows + 1) x width
+  Buffer columns;   // two slots per column
+  Buffer smallest;  // per column
+  Buffer along;     // per thread two slots per row of a bundle
+};
+
+/// The paths of one run. Rows are independent of each other along rows, columns along columns, so that the threads
+/// share both; a few rows at a time go down and up again while they are in the cache.
+template <typename T>
+class Paths {
  public:
-  Sweep(const CostVolume& volume, const RowGrid& rows, const cv::Mat& grey, const Penalties<T>& penalties, int paths,
-        bool upwards, SweepBuffers<T>& buffers)
+  Paths(const CostVolume& volume, const RowGrid& rows, const cv::Mat& guide, const Penalties<T>& penalties, int threads,
+        PathMemory& memory)
       : volume_(volume),
         rows_(rows),
-        grey_(grey),
+        guide_(guide),
         penalties_(penalties),
-        paths_(paths / 2),
-        upwards_(upwards),
         width_(volume.width()),
-        pixels_(width_ + 2),
-        slot_(volume.stride() + CostVolume::kPadding),
-        guard_(static_cast<T>(static_cast<T>(~T{0}) - penalties.p1)),
-        buffers_(buffers) {
-    // All predecessors of the first row, and those beside the image ever, are slots of zeros: they cost nothing.
-    for (auto& row : buffers_.rows) {
-      row.assign((paths_ - 1) * pixels_ * slot_ + CostVolume::kPadding, guard_);
-      for (std::size_t pixel = 0; pixel < (paths_ - 1) * pixels_; ++pixel) clear(row.data() + pixel * slot_);
-    }
-    for (auto& row : buffers_.smallest) row.assign((paths_ - 1) * pixels_, 0);
-    buffers_.along.assign(2 * slot_ + CostVolume::kPadding, guard_);
-    buffers_.p2.resize(static_cast<std::size_t>(paths_) * width_);
+        count_(volume.stride()),
+        slot_(static_cast<std::size_t>(count_) + 2 * kGuard),
+        memory_(memory) {
+    const std::size_t pixels = static_cast<std::size_t>(width_) * rows.count;
+    memory.sums.reserve(pixels * count_ * sizeof(std::uint16_t));
+    memory.across.reserve((pixels + rows.count) * sizeof(T));
+    memory.down.reserve((pixels + width_) * sizeof(T));
+    memory.columns.reserve(2 * width_ * slot_ * sizeof(T));
+    memory.smallest.reserve((static_cast<std::size_t>(width_) + kBundleLines) * sizeof(T));
+    memory.along.reserve(2 * slot_ * kBundleLines * threads * sizeof(T));
   }
 
-  /// Path costs of one row of the grid; rows come in the order of the sweep. sums: width x stride.
-  void row(int number, bool add, std::uint16_t* sums) {
-    SweepRow<T> row;
-    row.width = width_;
-    row.count = volume_.stride();
-    row.backwards = upwards_;
-    row.slot = static_cast<std::ptrdiff_t>(slot_);
-    row.p1 = penalties_.p1;
-    row.costs = volume_.at<T>(rows_.imageRow(number), 0);
-    row.sums = sums;
-    clear(buffers_.along.data() + slot_);
-    for (int i = 0; i < 2; ++i) row.along[i] = buffers_.along.data() + i * slot_ + CostVolume::kPadding;
-    for (int k = 0; k < paths_; ++k) row.p2[k] = fillJumps(k, number);
-    for (int k = 1; k < paths_; ++k) connect(k, row);
-    sweepRow(FDP_STEREO_SELECT(semiGlobalKernels), row, paths_, add);
-    current_ ^= 1;
+  std::uint16_t* sums(int row) { return memory_.sums.as<std::uint16_t>() + row * rowEntries(); }
+
+  /// Both ways along up to kBundleLines rows from `first` on; begins their sums.
+  void alongRows(int first, int last, int thread) {
+    for (int row = first; row < last; ++row) fillPenalties(row);
+    const int lines = last - first == kBundleLines ? kBundleLines : 1;
+    for (int row = first; row < last; row += lines) {
+      for (const bool backwards : {false, true}) followRows(row, lines, backwards, thread);
+    }
+  }
+
+  /// Forgets the predecessors of the columns in [first, last): they cost nothing.
+  void startColumns(int first, int last) {
+    for (int x = first; x < last; ++x) {
+      clear(column(x, 0));
+      clear(column(x, 1));
+      memory_.smallest.as<T>()[x] = 0;
+    }
+  }
+
+  /// Along the columns in [first, last) through the rows in [top, bottom), which follow those of the call before.
+  void alongColumns(int first, int last, int top, int bottom, bool upwards, bool exchanged) {
+    const int lines = last - first == kBundleLines ? kBundleLines : 1;
+    PathBundle<T> bundle = emptyBundle();
+    bundle.length = bottom - top;
+    bundle.step = upwards ? -rows_.step * volumeRow() : rows_.step * volumeRow();
+    bundle.p2_step = upwards ? -width_ : width_;
+    const int start = upwards ? bottom - 1 : top;
+    for (int x = first; x < last; x += lines) {
+      for (int k = 0; k < lines; ++k) {
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(x + k) * count_;
+        bundle.costs[k] = volume_.at<T>(rows_.imageRow(start), 0) + pixel;
+        bundle.sums[k] = sums(start) + pixel;
+        bundle.p2[k] = memory_.down.as<T>() + static_cast<std::ptrdiff_t>(upwards ? start + 1 : start) * width_ + x + k;
+        bundle.before[k] = column(x + k, exchanged ? 1 : 0);
+        bundle.after[k] = column(x + k, exchanged ? 0 : 1);
+      }
+      bundle.smallest = memory_.smallest.as<T>() + x;
+      bundle.sums_step = upwards ? -rowEntries() : rowEntries();
+      follow(bundle, lines, true);
+    }
   }
 
  private:
+  static constexpr std::size_t kGuard = CostVolume::kPadding;
+
+  std::ptrdiff_t rowEntries() const { return static_cast<std::ptrdiff_t>(width_) * count_; }
+  std::ptrdiff_t volumeRow() const { return rowEntries(); }
+  T* column(int x, int slot) {
+    return memory_.columns.as<T>() + (2 * static_cast<std::size_t>(x) + slot) * slot_ + kGuard;
+  }
+
+  PathBundle<T> emptyBundle() const {
+    PathBundle<T> bundle{};
+    bundle.count = count_;
+    bundle.p1 = penalties_.p1;
+    return bundle;
+  }
+
+  /// A slot of a predecessor outside the image, with guards that stay the largest after P1 is added.
   void clear(T* slot) const {
-    std::fill(slot + CostVolume::kPadding, slot + CostVolume::kPadding + volume_.stride(), T{0});
+    const auto guard = static_cast<T>(static_cast<T>(~T{0}) - penalties_.p1);
+    std::fill(slot - kGuard, slot, guard);
+    std::fill(slot, slot + count_, T{0});
+    std::fill(slot + count_, slot + count_ + kGuard, guard);
   }
 
-  /// Column of the predecessor less that of the pixel: the middle path comes straight from the row before.
-  int shift(int path) const {
-    if (path == 0) return upwards_ ? 1 : -1;
-    return paths_ == 2 ? 0 : path - 2;
+  void fillPenalties(int row) {
+    const auto* here = guide_.ptr<std::uint8_t>(rows_.imageRow(row));
+    const auto* above = guide_.ptr<std::uint8_t>(rows_.imageRow(std::max(row - 1, 0)));
+    T* across = memory_.across.as<T>() + static_cast<std::ptrdiff_t>(row) * (width_ + 1);
+    T* down = memory_.down.as<T>() + static_cast<std::ptrdiff_t>(row) * width_;
+    across[0] = across[width_] = 0;
+    for (int x = 1; x < width_; ++x) across[x] = penalties_.p2[std::abs(here[x] - here[x - 1])];
+    for (int x = 0; x < width_; ++x) down[x] = penalties_.p2[std::abs(here[x] - above[x])];
+    if (row + 1 == rows_.count) std::fill(down + width_, down + 2 * width_, T{0});
   }
 
-  void connect(int path, SweepRow<T>& row) {
-    // Pixel -1 comes first.
-    const std::size_t before = (path - 1) * pixels_ + 1 + shift(path), after = (path - 1) * pixels_ + 1;
-    row.before[path] = buffers_.rows[current_ ^ 1].data() + before * slot_ + CostVolume::kPadding;
-    row.after[path] = buffers_.rows[current_].data() + after * slot_ + CostVolume::kPadding;
-    row.smallest_before[path] = buffers_.smallest[current_ ^ 1].data() + before;
-    row.smallest_after[path] = buffers_.smallest[current_].data() + after;
-  }
-
-  /// P2 of every pixel of a row towards its predecessor; outside the image there is none, and any value will do.
-  const T* fillJumps(int path, int number) {
-    const int before_number = path == 0 ? number : std::clamp(upwards_ ? number + 1 : number - 1, 0, rows_.count - 1);
-    const auto* here = grey_.ptr<std::uint8_t>(rows_.imageRow(number));
-    const auto* before = grey_.ptr<std::uint8_t>(rows_.imageRow(before_number)) + shift(path);
-    T* p2 = buffers_.p2.data() + static_cast<std::size_t>(path) * width_;
-    const int first = std::max(0, -shift(path)), last = width_ - std::max(0, shift(path));
-    std::fill(p2, p2 + first, T{0});
-    for (int x = first; x < last; ++x) p2[x] = penalties_.p2[std::abs(here[x] - before[x])];
-    std::fill(p2 + last, p2 + width_, T{0});
-    return p2;
+  void followRows(int row, int lines, bool backwards, int thread) {
+    T smallest[kBundleLines] = {};
+    PathBundle<T> bundle = emptyBundle();
+    bundle.length = width_;
+    bundle.step = bundle.sums_step = backwards ? -count_ : count_;
+    bundle.p2_step = backwards ? -1 : 1;
+    bundle.smallest = smallest;
+    const int start = backwards ? width_ - 1 : 0;
+    T* slots = memory_.along.as<T>() + 2 * slot_ * kBundleLines * thread + kGuard;
+    for (int k = 0; k < lines; ++k) {
+      const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(start) * count_;
+      bundle.costs[k] = volume_.at<T>(rows_.imageRow(row + k), 0) + pixel;
+      bundle.sums[k] = sums(row + k) + pixel;
+      bundle.p2[k] =
+          memory_.across.as<T>() + static_cast<std::ptrdiff_t>(row + k) * (width_ + 1) + (backwards ? width_ : 0);
+      bundle.before[k] = slots + 2 * k * slot_;
+      bundle.after[k] = slots + (2 * k + 1) * slot_;
+      clear(bundle.before[k]);
+      clear(bundle.after[k]);
+    }
+    follow(bundle, lines, backwards);
   }
 
   const CostVolume& volume_;
   const RowGrid rows_;
-  const cv::Mat& grey_;
+  const cv::Mat& guide_;
   const Penalties<T>& penalties_;
-  const int paths_;
-  const bool upwards_;
   const int width_;
-  const std::size_t pixels_;
+  const int count_;
   const std::size_t slot_;
-  const T guard_;
-  SweepBuffers<T>& buffers_;
-  int current_ = 0;
+  PathMemory& memory_;
 };
 
-void check(const CostVolume& volume, const SemiGlobalParams& params) {
-  // One path cost holds a cost, P1 and P2; eight of them add up to 16 bits.
-  const double largest = volume.maxRaw() + (params.p1 + params.p2) / volume.step() + 2;
-  const double allowed = volume.depth() == CostVolume::Depth::kU8 ? 255 : 65535 / 8;
+void check(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params) {
+  if (guide.type() != CV_8UC1 || guide.rows != volume.height() || guide.cols != volume.width()) {
+    throw std::invalid_argument("semi-global matching: the guide must be an 8-bit grey image of " +
+                                std::to_string(volume.width()) + " x " + std::to_string(volume.height()) + " px");
+  }
+  const double largest = volume.maxRaw() + penaltiesOf(params) / volume.step() + 2;
+  const double allowed = largestPathCost(volume.depth());
   if (largest > allowed) {
     throw std::invalid_argument("semi-global matching: cost, P1 and P2 need " + std::to_string(largest) +
                                 " steps of the volume, but only " + std::to_string(allowed) + " fit");
@@ -169,78 +213,77 @@ void check(const CostVolume& volume, const SemiGlobalParams& params) {
 
 }  // namespace
 
-struct SemiGlobal::Workspace {
-  std::vector<std::uint16_t> sums;  // rows x W x stride
-  cv::Mat grey;                     // of colour images that have no 8-bit grey
-  std::array<SweepBuffers<std::uint8_t>, 2> sweeps8;
-  std::array<SweepBuffers<std::uint16_t>, 2> sweeps16;
-  std::array<DisparitySelection, 2> selections;
+double penaltiesOf(const SemiGlobalParams& params) { return params.p1 + params.p2; }
 
-  explicit Workspace(const SemiGlobalParams& params)
-      : selections{DisparitySelection(params.subpixel, params.uniqueness_ratio),
-                   DisparitySelection(params.subpixel, params.uniqueness_ratio)} {}
+struct SemiGlobalMatcher::Workspace {
+  PathMemory memory;
+  std::vector<DisparitySelection> selections;  // per thread
 
   template <typename T>
-  void optimize(const OptimizerInput& input, const SemiGlobalParams& params, int row_step,
-                std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output);
+  void run(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params, const RowGrid& rows,
+           OptimizerOutput& output);
 };
 
-/// Both sweeps start at their end of the image and store sums up to the middle; then each goes on over the rows of
-/// the other, adds to its sums and decides. Two threads share the work without a lock, and the result does not depend
-/// on whether there are two.
+/// Down the image: sums of the paths along the rows and downwards; up again: the rest, and the winners.
 template <typename T>
-void SemiGlobal::Workspace::optimize(const OptimizerInput& input, const SemiGlobalParams& params, int row_step,
-                                     std::array<SweepBuffers<T>, 2>& buffers, OptimizerOutput& output) {
-  const CostVolume& volume = input.volume;
-  const Penalties<T> penalties = makePenalties<T>(params, volume.step());
-  const cv::Mat& guide = eightBitGrey(input.pair.left, input.pair.left_grey, grey);
-  const RowGrid rows(volume.height(), row_step);
-  const int middle = rows.count / 2;
-  const std::size_t row_sums = static_cast<std::size_t>(volume.width()) * volume.stride();
-  if (sums.size() < row_sums * rows.count) {
-    sums = std::vector<std::uint16_t>();  // first, so that the old ones do not lie beside the new ones
-    sums.resize(row_sums * rows.count);
-  }
+void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params,
+                                       const RowGrid& rows, OptimizerOutput& output) {
+  const int threads = omp_get_max_threads();
+  const Penalties<T> penalties(params, volume.step());
+  Paths<T> paths(volume, rows, guide, penalties, threads, memory);
   DisparitySelection::createMaps(rows.count, volume.width(), output);
-  std::array<Sweep<T>, 2> sweeps = {Sweep<T>(volume, rows, guide, penalties, params.paths, false, buffers[0]),
-                                    Sweep<T>(volume, rows, guide, penalties, params.paths, true, buffers[1])};
-  const int first[2] = {0, rows.count - 1}, beyond[2] = {rows.count, -1}, turn[2] = {middle, middle - 1};
-  const int step[2] = {1, -1};
-#pragma omp parallel num_threads(std::min(2, omp_get_max_threads()))
+  selections.clear();
+  for (int i = 0; i < threads; ++i) selections.emplace_back(volume, params.subpixel, params.uniqueness_ratio, 4);
+  const int width = volume.width(), chunk = kBundleLines * threads;
+  const int columns = (width + kBundleLines - 1) / kBundleLines;
+#pragma omp parallel num_threads(threads)
   {
-#pragma omp for schedule(static, 1)
-    for (int s = 0; s < 2; ++s) {
-      for (int y = first[s]; y != turn[s]; y += step[s]) sweeps[s].row(y, false, sums.data() + y * row_sums);
+#pragma omp for schedule(static)
+    for (int i = 0; i < columns; ++i) paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width));
+    for (int top = 0; top < rows.count; top += chunk) {
+      const int bottom = std::min(top + chunk, rows.count);
+#pragma omp for schedule(static)
+      for (int row = top; row < bottom; row += kBundleLines) {
+        paths.alongRows(row, std::min(row + kBundleLines, bottom), omp_get_thread_num());
+      }
+#pragma omp for schedule(static)
+      for (int i = 0; i < columns; ++i) {
+        paths.alongColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width), top, bottom, false, top % 2 != 0);
+      }
     }
-#pragma omp for schedule(static, 1)
-    for (int s = 0; s < 2; ++s) {
-      for (int y = turn[s]; y != beyond[s]; y += step[s]) {
-        sweeps[s].row(y, true, sums.data() + y * row_sums);
-        selections[s].selectRow(y, sums.data() + y * row_sums, volume.width(), volume.stride(), volume.range(), output);
+#pragma omp for schedule(static)
+    for (int i = 0; i < columns; ++i) paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width));
+    for (int bottom = rows.count; bottom > 0; bottom -= chunk) {
+      const int top = std::max(bottom - chunk, 0);
+      const bool exchanged = (rows.count - bottom) % 2 != 0;
+#pragma omp for schedule(static)
+      for (int i = 0; i < columns; ++i) {
+        paths.alongColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width), top, bottom, true, exchanged);
+      }
+#pragma omp for schedule(static)
+      for (int row = top; row < bottom; ++row) {
+        selections[omp_get_thread_num()].selectRow(row, paths.sums(row), output);
       }
     }
   }
 }
 
-SemiGlobal::SemiGlobal(const SemiGlobalParams& params)
-    : params_(params), workspace_(std::make_unique<Workspace>(params)) {}
-SemiGlobal::~SemiGlobal() = default;
+SemiGlobalMatcher::SemiGlobalMatcher() : workspace_(std::make_unique<Workspace>()) {}
+SemiGlobalMatcher::~SemiGlobalMatcher() = default;
+SemiGlobalMatcher::SemiGlobalMatcher(SemiGlobalMatcher&&) noexcept = default;
+SemiGlobalMatcher& SemiGlobalMatcher::operator=(SemiGlobalMatcher&&) noexcept = default;
 
-void SemiGlobal::optimize(const OptimizerInput& input, OptimizerOutput& output) {
-  optimizeRows(input, params_.paths, 1, output);
-}
-
-void SemiGlobal::optimizeRows(const OptimizerInput& input, int paths, int row_step, OptimizerOutput& output) {
-  check(input.volume, params_);
-  SemiGlobalParams params = params_;
-  params.paths = paths;
-  if (input.volume.depth() == CostVolume::Depth::kU8) {
-    workspace_->optimize(input, params, row_step, workspace_->sweeps8, output);
+void SemiGlobalMatcher::match(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params,
+                              OptimizerOutput& output, int row_step) {
+  check(volume, guide, params);
+  const RowGrid rows(volume.height(), row_step);
+  if (volume.depth() == CostVolume::Depth::kU8) {
+    workspace_->run<std::uint8_t>(volume, guide, params, rows, output);
   } else {
-    workspace_->optimize(input, params, row_step, workspace_->sweeps16, output);
+    workspace_->run<std::uint16_t>(volume, guide, params, rows, output);
   }
 }
 
-int SemiGlobal::firstRow(int height, int row_step) { return RowGrid(height, row_step).imageRow(0); }
+int SemiGlobalMatcher::firstRow(int height, int row_step) { return RowGrid(height, row_step).imageRow(0); }
 
 }  // namespace fdp_stereo

@@ -5,33 +5,38 @@
 #include <vector>
 
 #include "optimizers/disparity_selection.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo {
 namespace {
 
+struct Scratch {
+  DisparitySelection selection;
+  std::vector<std::uint16_t> sums;
+};
+
 template <typename T>
-void optimizeVolume(const CostVolume& volume, const WinnerTakesAllParams& params, OptimizerOutput& output) {
-#pragma omp parallel
-  {
-    DisparitySelection selection(params.subpixel, params.uniqueness_ratio);
-    std::vector<std::uint16_t> sums(static_cast<std::size_t>(volume.width()) * volume.stride());
-#pragma omp for schedule(static)
-    for (int y = 0; y < volume.height(); ++y) {
-      const T* costs = volume.at<T>(y, 0);
-      sums.assign(costs, costs + sums.size());
-      selection.selectRow(y, sums.data(), volume.width(), volume.stride(), volume.range(), output);
-    }
-  }
+void takeWinnersOf(const CostVolume& volume, const WinnerTakesAllParams& params, OptimizerOutput& output) {
+  const std::size_t row = static_cast<std::size_t>(volume.width()) * volume.stride();
+  const auto makeScratch = [&] {
+    return Scratch{DisparitySelection(volume, params.subpixel, params.uniqueness_ratio, 1),
+                   std::vector<std::uint16_t>(row)};
+  };
+  parallelFor(volume.height(), makeScratch, [&](int y, Scratch& scratch) {
+    const T* costs = volume.at<T>(y, 0);
+    scratch.sums.assign(costs, costs + row);
+    scratch.selection.selectRow(y, scratch.sums.data(), output);
+  });
 }
 
 }  // namespace
 
-void WinnerTakesAll::optimize(const OptimizerInput& input, OptimizerOutput& output) {
-  DisparitySelection::createMaps(input.volume.height(), input.volume.width(), output);
-  if (input.volume.depth() == CostVolume::Depth::kU8) {
-    optimizeVolume<std::uint8_t>(input.volume, params_, output);
+void takeWinners(const CostVolume& volume, const WinnerTakesAllParams& params, OptimizerOutput& output) {
+  DisparitySelection::createMaps(volume.height(), volume.width(), output);
+  if (volume.depth() == CostVolume::Depth::kU8) {
+    takeWinnersOf<std::uint8_t>(volume, params, output);
   } else {
-    optimizeVolume<std::uint16_t>(input.volume, params_, output);
+    takeWinnersOf<std::uint16_t>(volume, params, output);
   }
 }
 

@@ -125,7 +125,6 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
   list.add("border", p.border, {"repeat_disparity", "repeat_pixel"},
            "Costs whose match is outside the right image: the pixel's nearest valid one along the disparities, or that "
            "of the nearest pixel of the row.");
-  list.add("bits", p.bits, 8, 16, "", "Bits of one stored cost, 8 or 16; 8 takes half the memory.");
 }
 
 void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagationParams& propagation) {
@@ -183,7 +182,6 @@ void addOptimizers(ParamList& list, PipelineParams& p) {
   list.add("uniqueness_ratio", p.winner_takes_all.uniqueness_ratio, 0.0, 100.0, "%",
            "A pixel stays empty unless its best cost is this much below the next best.");
   list.stage("semi_global");
-  list.add("paths", p.semi_global.paths, 4, 8, "", "Directions that costs are summed along, 4 or 8.");
   list.add("p1", p.semi_global.p1, 0.0, 100.0, "cost",
            "Penalty of a disparity that changes by 1 px; larger is smoother.");
   list.add("p2", p.semi_global.p2, 0.0, 100.0, "cost",
@@ -245,7 +243,6 @@ void addLocalExpansionSearch(ParamList& list, LocalExpansionParams& p) {
   list.add("seed", p.seed, 0, 1000000, "", "Seed of the random numbers.");
   list.add("max_time_ms", p.max_time_ms, 0.0, 1e7, "ms",
            "Return the best planes found after this time; 0 is no limit.");
-  list.add("warm_start", p.warm_start, "Offer the planes of the previous frame of a sequence.");
 }
 
 void addLocalExpansionRepair(ParamList& list, LocalExpansionParams& p) {
@@ -379,12 +376,6 @@ void requireOdd(const std::string& key, int value) {
   if (value % 2 == 0) throw std::invalid_argument(key + " = " + std::to_string(value) + ": must be odd");
 }
 
-void requireOneOf(const std::string& key, int value, int first, int second) {
-  if (value == first || value == second) return;
-  throw std::invalid_argument(key + " = " + std::to_string(value) + ": must be " + std::to_string(first) + " or " +
-                              std::to_string(second));
-}
-
 /// What a range per value cannot say.
 void validateTogether(const PipelineParams& p) {
   const CensusParams& census = p.matching_cost.census;
@@ -398,9 +389,7 @@ void validateTogether(const PipelineParams& p) {
   double weight_sum = 0.0;
   for (int i = 0; i < p.matching_cost.scales; ++i) weight_sum += p.matching_cost.scale_weights[i];
   if (weight_sum <= 0.0) throw std::invalid_argument("matching_cost.scale_weight_1 to _3: one used must be above 0");
-  requireOneOf("matching_cost.bits", p.matching_cost.bits, 8, 16);
   requireOdd("disparity_propagation.window", p.disparity_propagation.window);
-  requireOneOf("semi_global.paths", p.semi_global.paths, 4, 8);
   if (p.semi_global.p2 < p.semi_global.p1) {
     throw std::invalid_argument("semi_global.p2 = " + formatNumber(p.semi_global.p2) +
                                 ": must be at least semi_global.p1 = " + formatNumber(p.semi_global.p1));

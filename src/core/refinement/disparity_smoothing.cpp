@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parallel.hpp"
 #include "simd/disparity_smoothing_kernels.hpp"
 
 namespace fdp_stereo {
@@ -58,23 +59,22 @@ struct Smoother {
   }
 
   void run(const cv::Mat& source, cv::Mat& target, bool along_rows) const {
-#pragma omp parallel
-    {
-      std::vector<float> sums(width), weights(width);
-#pragma omp for schedule(static)
-      for (int y = 0; y < height; ++y) {
-        std::fill(sums.begin(), sums.end(), 0.0F);
-        std::fill(weights.begin(), weights.end(), 1.0F);  // the pixel itself
-        if (along_rows) {
-          addAlongRow(y, source, sums.data(), weights.data());
-        } else {
-          addAlongColumns(y, source, sums.data(), weights.data());
-        }
-        const auto* from = source.ptr<float>(y);
-        auto* to = target.ptr<float>(y);
-        for (int x = 0; x < width; ++x) to[x] = from[x] == kFar ? kFar : from[x] + sums[x] / weights[x];
+    struct Scratch {
+      std::vector<float> sums, weights;
+    };
+    const auto makeScratch = [&] { return Scratch{std::vector<float>(width), std::vector<float>(width)}; };
+    parallelFor(height, makeScratch, [&](int y, Scratch& scratch) {
+      std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0F);
+      std::fill(scratch.weights.begin(), scratch.weights.end(), 1.0F);  // the pixel itself
+      if (along_rows) {
+        addAlongRow(y, source, scratch.sums.data(), scratch.weights.data());
+      } else {
+        addAlongColumns(y, source, scratch.sums.data(), scratch.weights.data());
       }
-    }
+      const auto* from = source.ptr<float>(y);
+      auto* to = target.ptr<float>(y);
+      for (int x = 0; x < width; ++x) to[x] = from[x] == kFar ? kFar : from[x] + scratch.sums[x] / scratch.weights[x];
+    });
   }
 };
 

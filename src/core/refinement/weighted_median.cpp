@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "parallel.hpp"
 #include "simd/weighted_median_kernels.hpp"
 
 namespace fdp_stereo {
@@ -91,6 +92,19 @@ void findEdges(const PaddedSource& source, int y, int width, float min_range, st
   }
 }
 
+/// Buffers of one thread.
+struct Scratch {
+  std::vector<float> values, low, high;
+  std::vector<std::int32_t> weights;
+  std::vector<std::uint8_t> wanted;
+
+  Scratch(int side, int width) : low(width + 2), high(width + 2), wanted(width) {
+    const int lanes = (side + kMedianLanes - 1) / kMedianLanes * kMedianLanes;
+    values.resize(static_cast<std::size_t>(side) * lanes);
+    weights.resize(values.size());
+  }
+};
+
 }  // namespace
 
 void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat& mask,
@@ -100,26 +114,18 @@ void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat
   const auto table = weightTable(params.gamma);
   const float min_range = params.min_range_px > 0.0 ? static_cast<float>(params.min_range_px) : -1.0F;
   const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
-  const int side = 2 * params.radius + 1, width = disparity.cols;
-  const std::size_t samples =
-      static_cast<std::size_t>(side) * ((side + kMedianLanes - 1) / kMedianLanes * kMedianLanes);
-#pragma omp parallel
-  {
-    std::vector<float> values(samples), low(width + 2), high(width + 2);
-    std::vector<std::int32_t> weights(samples);
-    std::vector<std::uint8_t> wanted(width);
-#pragma omp for schedule(dynamic, 8)
-    for (int y = 0; y < disparity.rows; ++y) {
-      findEdges(source, y, width, min_range, low, high, wanted.data());
-      auto* d = disparity.ptr<float>(y);
-      const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
-      for (int x = 0; x < width; ++x) {
-        const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
-        if (wanted[x] == 0 || skip || std::isnan(d[x])) continue;
-        d[x] = kernels.weightedMedian(source.window(y, x, table.data()), values.data(), weights.data());
-      }
+  const int width = disparity.cols;
+  const auto makeScratch = [&] { return Scratch(2 * params.radius + 1, width); };
+  parallelFor(disparity.rows, makeScratch, [&](int y, Scratch& scratch) {
+    findEdges(source, y, width, min_range, scratch.low, scratch.high, scratch.wanted.data());
+    auto* d = disparity.ptr<float>(y);
+    const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
+    for (int x = 0; x < width; ++x) {
+      const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
+      if (scratch.wanted[x] == 0 || skip || std::isnan(d[x])) continue;
+      d[x] = kernels.weightedMedian(source.window(y, x, table.data()), scratch.values.data(), scratch.weights.data());
     }
-  }
+  });
 }
 
 }  // namespace fdp_stereo

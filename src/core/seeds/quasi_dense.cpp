@@ -13,7 +13,6 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kPaths = 4;
 constexpr int kMedianRadiusPx = 3;
 constexpr double kMaxDifferencePx = 1.0;  // between the views, and between neighbours of one region
 constexpr int kSpecklePx = 60;            // of the image: a row that is matched stands for row_step rows
@@ -78,11 +77,10 @@ DisparityPropagationParams surfacesOf(const QuasiDenseParams& params) {
   return surfaces;
 }
 
-Seeds quasiDenseSeeds(const CostVolume& volume, const StereoPair& pair, const QuasiDenseParams& params,
-                      SemiGlobal& semi_global) {
+Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
+                      const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher) {
   OptimizerOutput rough;
-  const Seeds none;
-  semi_global.optimizeRows({volume, pair, none, nullptr, nullptr, {}, {}}, kPaths, params.row_step, rough);
+  matcher.match(volume, guide, penalties, rough, params.row_step);
   LeftRightCheckParams check;
   check.max_difference_px = kMaxDifferencePx;
   checkLeftRight(rough.disparity_left, rough.disparity_right, check);
@@ -92,7 +90,7 @@ Seeds quasiDenseSeeds(const CostVolume& volume, const StereoPair& pair, const Qu
   filterSpeckles(rough.disparity_left, speckles);
 
   const cv::Mat grid = sampleGrid(rough.disparity_left, params);
-  const int first_row = SemiGlobal::firstRow(volume.height(), params.row_step);
+  const int first_row = SemiGlobalMatcher::firstRow(volume.height(), params.row_step);
   const int rows_per_seed = rowsPerSeed(params);
   Seeds seeds;
   for (int row = 0; row < grid.rows; ++row) {

@@ -8,7 +8,9 @@ namespace {
 
 // Vector types of the compiler, as wide as the registers: it would take wider ones apart lane by lane. The disparities
 // of a pixel are a multiple of 16, so that no scalar remainder is left.
-#ifdef __AVX2__
+#if defined(__AVX512BW__)
+constexpr int kVectorBytes = 64;
+#elif defined(__AVX2__)
 constexpr int kVectorBytes = 32;
 #else
 constexpr int kVectorBytes = 16;
@@ -41,11 +43,13 @@ using Full = typename Lanes<T, kVectorBytes / sizeof(T)>::Vector;
 
 template <typename T>
 inline Half<T> smallerHalf(const Full<T>& v) {
-  Half<T> halves[2];
-  __builtin_memcpy(&halves[0], &v, sizeof(halves[0]));
-  if (kVectorBytes == 16) return halves[0];
-  __builtin_memcpy(&halves[1], reinterpret_cast<const char*>(&v) + kVectorBytes - 16, sizeof(halves[1]));
-  return smallerOf(halves[0], halves[1]);
+  constexpr int kParts = kVectorBytes / 16;
+  Half<T> parts[kParts];
+  __builtin_memcpy(parts, &v, sizeof(v));
+  for (int step = kParts / 2; step > 0; step /= 2) {
+    for (int k = 0; k < step; ++k) parts[k] = smallerOf(parts[k], parts[k + step]);
+  }
+  return parts[0];
 }
 
 #ifdef __clang__
@@ -77,82 +81,77 @@ inline void smallestLanes(const Half<T> (&v)[4], T (&smallest)[4]) {
 
 #undef FDP_STEREO_PICK
 
-/// The paths that meet in one pixel.
-template <typename T, int kPaths>
-struct PixelPaths {
-  const T* before[kPaths];
-  T* after[kPaths];
-  T smallest[kPaths];  // of the predecessors
-  T jump[kPaths];      // that + P2
-};
-
-/// kLanes disparities of all paths of a pixel; all sums fit T by the choice of the cost step.
-template <typename T, int kLanes, int kPaths, bool kAdd>
-inline void stepLanes(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, int i,
-                      typename Lanes<T, kLanes>::Vector (&smallest)[4], std::uint16_t* sums) {
+/// kLanes disparities of one pixel of each line from entry i on; all path costs fit T by the choice of the cost step.
+template <typename T, int kLanes, bool kAdd>
+inline typename Lanes<T, kLanes>::Vector stepLanes(const T* before, T* after, const T* costs, std::uint16_t* sums, T p1,
+                                                   T jump, T smallest) {
   using L = Lanes<T, kLanes>;
   using Vector = typename L::Vector;
   using Sums = typename L::Sums;
-  const Vector cost = L::load(costs + i);
-  Sums sum = {};
-  if (kAdd) __builtin_memcpy(&sum, sums + i, sizeof(sum));
-  for (int k = 0; k < kPaths; ++k) {
-    const T* before = paths.before[k] + i;
-    const Vector aside = smallerOf(L::load(before - 1), L::load(before + 1)) + p1;
-    const Vector jump = Vector{} + paths.jump[k];
-    const Vector path = smallerOf(smallerOf(L::load(before), aside), jump) - paths.smallest[k] + cost;
-    L::store(path, paths.after[k] + i);
-    smallest[k] = smallerOf(smallest[k], path);
-    sum += __builtin_convertvector(path, Sums);
+  const Vector aside = smallerOf(L::load(before - 1), L::load(before + 1)) + p1;
+  const Vector path = smallerOf(smallerOf(L::load(before), aside), Vector{} + jump) - smallest + L::load(costs);
+  L::store(path, after);
+  Sums sum = __builtin_convertvector(path, Sums);
+  if (kAdd) {
+    Sums others;
+    __builtin_memcpy(&others, sums, sizeof(others));
+    sum += others;
   }
-  __builtin_memcpy(sums + i, &sum, sizeof(sum));
+  __builtin_memcpy(sums, &sum, sizeof(sum));
+  return path;
 }
 
-/// All disparities of a pixel; smallest[k] = the smallest cost of path k.
-template <typename T, int kPaths, bool kAdd>
-inline void stepPixel(const PixelPaths<T, kPaths>& paths, const T* costs, T p1, int count, std::uint16_t* sums,
-                      T (&smallest)[4]) {
+/// One pixel of one line, all disparities; gives the smallest lanes.
+template <typename T, bool kAdd>
+inline Half<T> stepPixel(const T* before, T* after, const T* costs, std::uint16_t* sums, T p1, T jump, T smallest,
+                         int count) {
   constexpr int kWide = kVectorBytes / sizeof(T);
-  Full<T> wide[4];
-  for (auto& v : wide) v = ~Full<T>{};
+  constexpr int kNarrow = 16 / sizeof(T);
+  Full<T> wide = ~Full<T>{};
   int i = 0;
-  for (; i + kWide <= count; i += kWide) stepLanes<T, kWide, kPaths, kAdd>(paths, costs, p1, i, wide, sums);
-  Half<T> half[4];
-  for (int k = 0; k < 4; ++k) half[k] = smallerHalf<T>(wide[k]);
-  if (i < count) stepLanes<T, 16 / sizeof(T), kPaths, kAdd>(paths, costs, p1, i, half, sums);
-  smallestLanes<T>(half, smallest);
+  for (; i + kWide <= count; i += kWide) {
+    wide = smallerOf(wide, stepLanes<T, kWide, kAdd>(before + i, after + i, costs + i, sums + i, p1, jump, smallest));
+  }
+  Half<T> half = smallerHalf<T>(wide);
+  for (; i < count; i += kNarrow) {
+    half = smallerOf(half, stepLanes<T, kNarrow, kAdd>(before + i, after + i, costs + i, sums + i, p1, jump, smallest));
+  }
+  return half;
 }
 
-template <typename T, int kPaths, bool kAdd>
-void sweepRowOf(const SweepRow<T>& row_in) {
+template <typename T, int kLines, bool kAdd>
+void followOf(const PathBundle<T>& bundle_in) {
   // A copy whose address nobody has: bytes stored through T* could otherwise change it, and it would be read anew.
-  const SweepRow<T> row = row_in;
+  const PathBundle<T> bundle = bundle_in;
+  T* before[kLines];
+  T* after[kLines];
   T smallest[4] = {};
-  PixelPaths<T, kPaths> paths;
-  for (int n = 0; n < row.width; ++n) {
-    const int x = row.backwards ? row.width - 1 - n : n;
-    const std::ptrdiff_t slot = x * row.slot;
-    const std::ptrdiff_t entry = static_cast<std::ptrdiff_t>(x) * row.count;
-    paths.before[0] = row.along[(n & 1) ^ 1];
-    paths.after[0] = row.along[n & 1];
-    paths.smallest[0] = smallest[0];
-    for (int k = 1; k < kPaths; ++k) {
-      paths.before[k] = row.before[k] + slot;
-      paths.after[k] = row.after[k] + slot;
-      paths.smallest[k] = row.smallest_before[k][x];
-    }
-    for (int k = 0; k < kPaths; ++k) paths.jump[k] = static_cast<T>(paths.smallest[k] + row.p2[k][x]);
-    stepPixel<T, kPaths, kAdd>(paths, row.costs + entry, row.p1, row.count, row.sums + entry, smallest);
-    for (int k = 1; k < kPaths; ++k) row.smallest_after[k][x] = smallest[k];
+  for (int k = 0; k < kLines; ++k) {
+    before[k] = bundle.before[k];
+    after[k] = bundle.after[k];
+    smallest[k] = bundle.smallest[k];
   }
+  for (int n = 0; n < bundle.length; ++n) {
+    Half<T> half[4] = {};
+    for (int k = 0; k < kLines; ++k) {
+      const T jump = static_cast<T>(smallest[k] + bundle.p2[k][n * bundle.p2_step]);
+      half[k] = stepPixel<T, kAdd>(before[k], after[k], bundle.costs[k] + n * bundle.step,
+                                   bundle.sums[k] + n * bundle.sums_step, bundle.p1, jump, smallest[k], bundle.count);
+      T* const now = after[k];
+      after[k] = before[k];
+      before[k] = now;
+    }
+    smallestLanes<T>(half, smallest);
+  }
+  for (int k = 0; k < kLines; ++k) bundle.smallest[k] = smallest[k];
 }
 
 template <typename T>
-void sweepRow(const SweepRow<T>& row, int paths, bool add) {
-  if (paths == 2) {
-    add ? sweepRowOf<T, 2, true>(row) : sweepRowOf<T, 2, false>(row);
+void follow(const PathBundle<T>& bundle, int lines, bool add) {
+  if (lines == kBundleLines) {
+    add ? followOf<T, kBundleLines, true>(bundle) : followOf<T, kBundleLines, false>(bundle);
   } else {
-    add ? sweepRowOf<T, 4, true>(row) : sweepRowOf<T, 4, false>(row);
+    add ? followOf<T, 1, true>(bundle) : followOf<T, 1, false>(bundle);
   }
 }
 
@@ -227,7 +226,7 @@ void keepSmaller(const std::uint16_t* __restrict values, int count, std::uint16_
 }  // namespace
 
 const SemiGlobalKernels& semiGlobalKernels() {
-  static const SemiGlobalKernels kernels = {sweepRow<std::uint8_t>, sweepRow<std::uint16_t>, findWinners, keepSmaller};
+  static const SemiGlobalKernels kernels = {follow<std::uint8_t>, follow<std::uint16_t>, findWinners, keepSmaller};
   return kernels;
 }
 

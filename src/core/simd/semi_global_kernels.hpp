@@ -9,26 +9,26 @@
 
 namespace fdp_stereo {
 
-/// Paths that meet in a pixel in one sweep, at most: path 0 along the row, the others from the row before.
-constexpr int kSweepPaths = 4;
+/// Paths that are followed side by side, for what one waits for the others can do.
+constexpr int kBundleLines = 4;
 
-/// One row of a sweep. The costs of one path at one pixel fill a slot: `count` entries and a readable guard entry on
-/// both sides. Arrays of the row before start at the predecessor of pixel 0.
+/// Paths of one direction along neighbouring rows or columns. The costs of one path at one pixel fill a slot: `count`
+/// entries and a readable guard entry on both sides. Every pixel exchanges the two slots of its path, so that after an
+/// even number of pixels the last one is in `before` again, after an odd number in `after`.
 template <typename T>
-struct SweepRow {
-  int width;
-  int count;                              ///< entries per pixel, a multiple of 16
-  bool backwards;                         ///< from the last pixel to the first
-  std::ptrdiff_t slot;                    ///< entries from slot to slot
-  T p1;                                   ///< penalty of a step by one disparity
-  const T* costs;                         ///< [x][count], raw matching costs
-  std::uint16_t* sums;                    ///< [x][count], of all paths
-  T* along[2];                            ///< two slots for path 0; the second holds the predecessor of the first pixel
-  const T* p2[kSweepPaths];               ///< [path][x], penalty of any other step
-  const T* before[kSweepPaths];           ///< [path][x][slot], path 1 on
-  T* after[kSweepPaths];                  ///< the same of this row, written
-  const T* smallest_before[kSweepPaths];  ///< [path][x], smallest cost in each slot of `before`
-  T* smallest_after[kSweepPaths];         ///< the same of `after`, written
+struct PathBundle {
+  int length;                         ///< pixels of each path
+  int count;                          ///< entries per pixel, a multiple of 16
+  std::ptrdiff_t step;                ///< from pixel to pixel, in entries of the costs
+  std::ptrdiff_t sums_step;           ///< the same of the sums
+  std::ptrdiff_t p2_step;             ///< from pixel to pixel, in entries of p2
+  T p1;                               ///< penalty of a step by one disparity
+  const T* costs[kBundleLines];       ///< raw matching costs of the first pixel
+  std::uint16_t* sums[kBundleLines];  ///< of all paths
+  const T* p2[kBundleLines];          ///< penalty of any other step
+  T* before[kBundleLines];            ///< slot of the predecessor
+  T* after[kBundleLines];             ///< the other slot
+  T* smallest;                        ///< [line], smallest cost of the predecessor, then of the last pixel
 };
 
 /// Smallest sums of one pixel: that of the winner, its index (the lowest on ties), and the smallest one that is more
@@ -41,10 +41,10 @@ struct Winner {
 
 /// Inner loops of semi-global matching, compiled per instruction set.
 struct SemiGlobalKernels {
-  /// L(p, d) = C + min(L(d), L(d - 1) + P1, L(d + 1) + P1, min L + P2) - min L for `paths` (2 or 4) paths;
-  /// their sum is stored in, or with `add` added to, row.sums.
-  void (*sweepRowU8)(const SweepRow<std::uint8_t>& row, int paths, bool add);
-  void (*sweepRowU16)(const SweepRow<std::uint16_t>& row, int paths, bool add);
+  /// L(p, d) = C + min(L(d), L(d - 1) + P1, L(d + 1) + P1, min L + P2) - min L along 1 or kBundleLines paths; it is
+  /// stored in, or with `add` added to, the sums.
+  void (*followU8)(const PathBundle<std::uint8_t>& bundle, int lines, bool add);
+  void (*followU16)(const PathBundle<std::uint16_t>& bundle, int lines, bool add);
   /// Winners of `width` pixels among sums[x * stride .. x * stride + count - 1]; the entries up to the next multiple of
   /// 16 are read, too.
   void (*findWinners)(const std::uint16_t* sums, int stride, int count, int width, Winner* winners);

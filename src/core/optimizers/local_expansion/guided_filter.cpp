@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <array>
 
+#include "parallel.hpp"
 #include "simd/local_expansion_kernels.hpp"
 
 namespace fdp_stereo::local_expansion {
@@ -66,8 +67,7 @@ FilterGuide makeFilterGuide(const cv::Mat& image, int radius, double epsilon) {
   // Bands of rows, so that threads share the work; each starts its column sums afresh.
   constexpr int kBand = 32;
   const int bands = (height + kBand - 1) / kBand;
-#pragma omp parallel for schedule(dynamic)
-  for (int band = 0; band < bands; ++band) {
+  const auto filterBand = [&](int band) {
     std::vector<Moments> columns(width, Moments{});
     const auto addRow = [&](int y, double sign) {
       if (y < 0 || y >= height) return;
@@ -87,7 +87,8 @@ FilterGuide makeFilterGuide(const cv::Mat& image, int radius, double epsilon) {
       }
       addRow(y - radius, -1.0);
     }
-  }
+  };
+  parallelFor(bands, filterBand, 1);
   return guide;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimizers/local_expansion/post_processing.hpp"
+#include "parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -118,18 +119,16 @@ void filterPlanes(const cv::Mat& image, const cv::Mat& consistent, int radius_px
   if (radius_px <= 0) return;
   const std::vector<float> table = weightTable(gamma);
   const Labels before = labels;
-#pragma omp parallel
-  {
-    std::vector<WeightedPixel> window;
-#pragma omp for schedule(dynamic, 4)
-    for (int y = 0; y < labels.height; ++y) {
-      for (int x = 0; x < labels.width; ++x) {
-        if (consistent.at<std::uint8_t>(y, x) != 0) continue;
-        collectWindow(image, before, {x, y}, radius_px, table, window);
-        labels.planes.set(labels.index(x, y), medianOf(window, before));
-      }
-    }
-  }
+  using Window = std::vector<WeightedPixel>;
+  parallelFor(
+      labels.height, [] { return Window(); },
+      [&](int y, Window& window) {
+        for (int x = 0; x < labels.width; ++x) {
+          if (consistent.at<std::uint8_t>(y, x) != 0) continue;
+          collectWindow(image, before, {x, y}, radius_px, table, window);
+          labels.planes.set(labels.index(x, y), medianOf(window, before));
+        }
+      });
 }
 
 cv::Mat disparityOf(const Labels& labels, DisparityRange range) {

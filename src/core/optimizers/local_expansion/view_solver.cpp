@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "optimizers/local_expansion/random.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {
@@ -88,13 +89,12 @@ Labels ViewSolver::solve(const StopCondition& stop, const Report& report) {
 void ViewSolver::initialize(Labels& labels) {
   const std::vector<Cell>& cells = layers_.front().cells();
   const int count = static_cast<int>(cells.size());
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int i = 0; i < count; ++i) {
+  parallelFor(count, [&](int i) {
     Worker& worker = workers_[omp_get_thread_num()];
     const Cell& cell = cells[i];
     Random random({static_cast<std::uint64_t>(params_.seed), view_.number, 0, static_cast<std::uint64_t>(i)});
     choose(initialPlanes(cell, worker, random), cell, worker, labels);
-  }
+  });
 }
 
 // Gives every pixel of a cell the candidate that is cheapest there.
@@ -124,9 +124,6 @@ ViewSolver::Candidates ViewSolver::initialPlanes(const Cell& cell, Worker& worke
   const float y = static_cast<float>(cell.core.y + random.below(cell.core.height));
   const float d = random.uniform(static_cast<float>(view_.range.min), static_cast<float>(view_.range.max()));
   Candidates planes;
-  if (view_.previous != nullptr) {
-    planes.push_back(proposeExpansion(*view_.previous, cell.core, random));
-  }
   if (!view_.initial.empty()) {
     const RansacParams ransac{params_.ransac_threshold_px, params_.ransac_samples};
     for (const cv::Rect& area : {cell.core, cell.region}) {
@@ -159,10 +156,10 @@ bool ViewSolver::visitLayer(int layer, int round, bool unary_only, const StopCon
     if (stop.reached()) return false;
     const std::vector<int>& group = layers_[layer].group(g);
     const int count = static_cast<int>(group.size());
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < count; ++i) {
+    const auto visit = [&](int i) {
       visitCell(layer, layers_[layer].cells()[group[i]], round, unary_only, workers_[omp_get_thread_num()], labels);
-    }
+    };
+    parallelFor(count, visit, 1);
   }
   return true;
 }
@@ -208,7 +205,6 @@ ViewSolver::Candidates ViewSolver::propose(int layer, const Cell& cell, int roun
   const int x = cell.core.x + random.below(cell.core.width);
   const int y = cell.core.y + random.below(cell.core.height);
   if (seeds_.planeAt(x, y, triangle)) planes.push_back(triangle);
-  if (view_.previous != nullptr) planes.push_back(view_.previous->plane(x, y));
   return planes;
 }
 

@@ -37,11 +37,10 @@ struct View {
   cv::Mat image;  ///< CV_8UC1 or CV_8UC3
   const CostVolume* volume = nullptr;
   DisparityRange range;
-  int steps = 1;                     ///< entries of the volume per px
-  cv::Mat initial;                   ///< CV_32FC1 disparities (NaN = none) to start from, or empty
-  std::vector<SurfacePoint> seeds;   ///< sparse disparities, real-valued positions
-  const Labels* previous = nullptr;  ///< planes of the previous frame, or null
-  std::uint64_t number = 0;          ///< keeps the random numbers of the views apart
+  int steps = 1;                    ///< entries of the volume per px
+  cv::Mat initial;                  ///< CV_32FC1 disparities (NaN = none) to start from, or empty
+  std::vector<SurfacePoint> seeds;  ///< sparse disparities, real-valued positions
+  std::uint64_t number = 0;         ///< keeps the random numbers of the views apart
 };
 
 /// Finds the planes of one view. `report` is called with the number of finished rounds and the energy.
