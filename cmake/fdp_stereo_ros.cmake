@@ -3,9 +3,12 @@
 #
 # The nodelet and its tools. Everything but the topics (disparity_nodelet.cpp) is tested without a roscore.
 add_library(fdp_stereo_nodelet
+  src/ros/camera.cpp
   src/ros/conversions.cpp
+  src/ros/search_range.cpp
   src/ros/params_ros.cpp
   src/ros/reconfigure_server.cpp
+  src/ros/pair_synchronizer.cpp
   src/ros/frame_worker.cpp
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp

@@ -146,7 +146,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   result.feature_note = std::move(features.note);
   clock.done("feature_matching");
 
-  result.row_alignment = alignPair(result.matches, pair);
+  result.row_alignment = alignPair(result.matches, given_left.rows, pair);
   clock.done("row_alignment");
 
   CostVolume& volume = buffers_->volume;
@@ -196,10 +196,11 @@ Seeds Pipeline::matchQuasiDense(const StereoPair& pair, const CostVolume& volume
   return quasiDenseSeeds(volume, pair, params_.quasi_dense, own);
 }
 
-RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
+RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair) {
   if (!params_.row_alignment.enabled) return {};
   const cv::Size size = pair.left.size();
-  RowAlignment alignment = row_alignment_.update(matches, size, params_.row_alignment);
+  const double given_px = static_cast<double>(given_rows) / size.height;
+  RowAlignment alignment = row_alignment_.update(matches, size, params_.row_alignment, given_px);
   const bool shared = pair.right.data == pair.right_grey.data;
   pair.right = alignRows(pair.right, alignment.model);
   pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);

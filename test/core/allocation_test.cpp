@@ -89,7 +89,7 @@ Seeds seedsOf(int cols, int rows, SeedSource source) {
   Seeds seeds;
   for (int i = 0; i < 300; ++i) {
     seeds.push_back({static_cast<float>(i * 37 % cols), static_cast<float>(i * 53 % rows),
-                     6.0F + 0.01F * static_cast<float>(i), 0.9F, 0.3F, source});
+                     6.0F + 0.01F * static_cast<float>(i), 0.9F, source});
   }
   return seeds;
 }
