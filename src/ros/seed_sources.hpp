@@ -19,6 +19,7 @@
 
 #include "frame_processor.hpp"
 #include "stamps.hpp"
+#include "start_params.hpp"
 
 namespace fdp_stereo {
 
@@ -81,7 +82,7 @@ class SeedSources {
  public:
   /// Reads `~seeds_fixed_frame`: the frame that stands still while the robot moves, for the time between a cloud and
   /// the image; empty = both are taken as of one time.
-  SeedSources(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+  SeedSources(const ros::NodeHandle& node, StartParams& params);
 
   void subscribe();
   void unsubscribe();
@@ -107,8 +108,8 @@ class SeedSources {
 
   void onDepth(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info);
   template <typename Message, typename ToPoints>
-  void addSource(Request& request, StampedBuffer<Message>& buffer, const std::string& topic,
-                 const SeedSourceParams& params, SeedSource source, const ToPoints& to_points);
+  void addSource(Request& request, StampedBuffer<Message>& buffer, const std::string& topic, double trust,
+                 SeedSource source, const ToPoints& to_points);
   Points toLeft(Points points, const std_msgs::Header& from, const std_msgs::Header& left) const;
 
   ros::NodeHandle node_;
