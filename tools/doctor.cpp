@@ -42,6 +42,8 @@ class Doctor {
     seen_.node = node_.resolveName(node);
     ros::param::get(seen_.node + "/min_disparity", seen_.range.min);
     ros::param::get(seen_.node + "/disparity_range", seen_.range.count);
+    ros::param::get(seen_.node + "/approximate_sync", seen_.approximate_sync);
+    ros::param::get(seen_.node + "/approximate_sync_tolerance", seen_.tolerance_s);
     if (newest_.left && newest_.right && newest_.left_info && newest_.right_info) seen_.pair = newest_;
     return seen_;
   }
