@@ -32,7 +32,11 @@ int main(int argc, char** argv) {
   std::set_terminate(endWithMessage);
   ros::init(argc, argv, "disparity");
   nodelet::Loader loader(false);
-  if (!loader.load(ros::this_node::getName(), "fdp_stereo/disparity", ros::names::getRemappings(), {})) return 1;
+  if (!loader.load(ros::this_node::getName(), "fdp_stereo/disparity", ros::names::getRemappings(), {})) {
+    std::fputs("disparity: the node cannot be started; where nothing else is said above, memory or threads ran out\n",
+               stderr);
+    return EXIT_FAILURE;
+  }
   ros::spin();
   return 0;
 }

@@ -77,6 +77,8 @@ class DisparityNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() override;
+  void start();
+  void release();
   void nameInputs();
   void startReports(std::chrono::duration<double> diagnostic_period, std::chrono::duration<double> watch_period);
   void advertise();
@@ -134,9 +136,11 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::unique_ptr<FrameWorker> worker_;
 };
 
+DisparityNodelet::~DisparityNodelet() { release(); }
+
 /// The worker first, for a publisher that is shut down must not be used; then from the sources of callbacks to what
 /// they use: shutdown() waits for a callback that runs in another thread.
-DisparityNodelet::~DisparityNodelet() {
+void DisparityNodelet::release() {
   if (worker_) worker_->stop();
   disparity_.shutdown();
   depth_.shutdown();
@@ -145,24 +149,37 @@ DisparityNodelet::~DisparityNodelet() {
   seeds_image_.shutdown();
   disparity_color_.shutdown();
   diagnostics_task_.reset();
+  diagnostics_.reset();
   watch_task_.reset();
   if (worker_) unsubscribe();
   worker_.reset();
+  seeds_.reset();
   reconfigure_.reset();
 }
 
+/// The loader of a nodelet that throws takes the callback queue away before the nodelet: nothing may be left in it.
 void DisparityNodelet::onInit() {
+  try {
+    start();
+  } catch (const std::exception& error) {
+    NODELET_FATAL("cannot start: %s", error.what());
+    release();
+    throw;
+  }
+}
+
+void DisparityNodelet::start() {
   ros::NodeHandle& node = getNodeHandle();
   nameInputs();
-  StartParams start(getPrivateNodeHandle());
+  StartParams params(getPrivateNodeHandle());
   const auto say = [this](const std::string& message) { warn(message); };
-  const PairSynchronizerParams sync = readSynchronizerParams(start, say);
+  const PairSynchronizerParams sync = readSynchronizerParams(params, say);
   status_.approximate_sync = sync.approximate;
-  start.param<std::string>("image_transport", "raw");  // which image_transport reads itself
-  const auto diagnostic_period = periodOf(start.param("diagnostic_period", kDiagnosticsPeriod), kDiagnosticsPeriod);
-  const auto watch_period = periodOf(start.param("watch_period", kWatchPeriod), kWatchPeriod);
-  seeds_ = std::make_unique<SeedSources>(node, start);
-  reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), start.names(), say);
+  params.param<std::string>("image_transport", "raw");  // which image_transport reads itself
+  const auto diagnostic_period = periodOf(params.param("diagnostic_period", kDiagnosticsPeriod), kDiagnosticsPeriod);
+  const auto watch_period = periodOf(params.param("watch_period", kWatchPeriod), kWatchPeriod);
+  seeds_ = std::make_unique<SeedSources>(node, params);
+  reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), params.names(), say);
 
   synchronizer_ = std::make_unique<PairSynchronizer>(
       sync, PairSynchronizer::Callbacks{[this](const StereoFrame& frame) { onPair(frame); }, [this] { onRestart(); },
