@@ -13,7 +13,7 @@ set -u
 port=11419
 work="$(mktemp -d)"
 export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work" ROS_LOG_DIR="$work"
-export MALLOC_ARENA_MAX=2 # an arena reserves 64 MB of addresses
+export MALLOC_ARENA_MAX="${MALLOC_ARENA_MAX:-2}" # an arena reserves 64 MB of addresses
 trap 'kill "${node:-}" "${play:-}" "${reader:-}" "${master:-}" 2>/dev/null || true; rm -rf "$work"' EXIT
 
 rosmaster --core -p "$port" </dev/null >"$work/master.log" 2>&1 &
