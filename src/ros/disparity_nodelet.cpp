@@ -188,10 +188,7 @@ void DisparityNodelet::start() {
                                                     " s is too far from the others'; check the clock of the camera"));
                                         }});
   processor_ = std::make_unique<FrameProcessor>(
-      topics_, [this](const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                      const StereoGeometry& geometry, std::vector<std::string>& warnings) {
-        return seeds_->collect(frame, settings, left, geometry, warnings);
-      });
+      topics_, [this](const SeedRequest& request) { return seeds_->collect(request); });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
   startReports(diagnostic_period, watch_period);

@@ -91,7 +91,11 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   const PinholeCamera camera = pinholeCamera(*frame.left_info, left.size());
   describePlace(camera, frame, topics_.left_info, output.report);
 
-  const Seeds external = externalSeeds(frame, settings, camera, geometry, output.report);
+  using Clock = std::chrono::steady_clock;
+  const auto patience =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.node.seeds_wait_s));
+  const Seeds external = externalSeeds(
+      {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
   PipelineResult result = pipelineFor(settings).run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
   dropUnseen(result.disparity);
@@ -129,11 +133,10 @@ void FrameProcessor::fillReport(PipelineResult& result, FrameReport& report) {
   report.warnings.push_back(told_rows_.warning);
 }
 
-Seeds FrameProcessor::externalSeeds(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                                    const StereoGeometry& geometry, FrameReport& report) const {
+Seeds FrameProcessor::externalSeeds(const SeedRequest& request, FrameReport& report) const {
   if (!seeds_) return {};
-  Seeds seeds = seeds_(frame, settings, left, geometry, report.warnings);
-  if (!seeds.empty() && !settings.pipeline.disparity_propagation.enabled) {
+  Seeds seeds = seeds_(request);
+  if (!seeds.empty() && !request.settings.pipeline.disparity_propagation.enabled) {
     report.warnings.push_back("seeds arrive but disparity_propagation_enabled is false: they have little effect");
   }
   report.external_seeds = seeds.size();

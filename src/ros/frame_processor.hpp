@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -53,10 +54,18 @@ struct FrameOutput {
   FrameReport report;
 };
 
-/// Seeds of other sensors for one pair; adds to `warnings` what was left out and why.
-using SeedProvider =
-    std::function<Seeds(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                        const StereoGeometry& geometry, std::vector<std::string>& warnings)>;
+/// What a pair asks of other sensors.
+struct SeedRequest {
+  const StereoFrame& frame;
+  const NodeSettings& settings;
+  const PinholeCamera& left;
+  const StereoGeometry& geometry;
+  std::chrono::steady_clock::time_point
+      deadline;                        ///< until when it may be waited for messages, of all sources together
+  const std::atomic<bool>* cancel;     ///< ends the waiting; may be null
+  std::vector<std::string>& warnings;  ///< what was left out and why
+};
+using SeedProvider = std::function<Seeds(const SeedRequest& request)>;
 
 /// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
 class FrameProcessor {
@@ -75,8 +84,7 @@ class FrameProcessor {
   std::pair<cv::Mat, cv::Mat> decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
   Pipeline& pipelineFor(const NodeSettings& settings);
 
-  Seeds externalSeeds(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                      const StereoGeometry& geometry, FrameReport& report) const;
+  Seeds externalSeeds(const SeedRequest& request, FrameReport& report) const;
   void fillReport(PipelineResult& result, FrameReport& report);
 
   StereoTopics topics_;

@@ -257,6 +257,14 @@ TEST(DisparityNodelet, ABadPresetFallsBackAndSaysSo) {
   EXPECT_TRUE(graph.process(goodMessages()));
 }
 
+/// roslaunch starts nodes in a folder of its own.
+TEST(DisparityNodelet, APresetWithARelativeNameTellsWhereItLooked) {
+  LogLines log;
+  NodeletGraph graph("/relative_preset", {{"preset", std::string("my.yaml")}});
+  EXPECT_NE(log.wait({"~preset", "my.yaml", "looked in " + std::filesystem::current_path().string(), "using fast"}),
+            "");
+}
+
 TEST(DisparityNodelet, BadParametersOfTheStartAreSaid) {
   LogLines log;
   NodeletGraph graph("/bad_start", {{"image_transport", std::string("no_such")},
