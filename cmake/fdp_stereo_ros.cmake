@@ -42,6 +42,8 @@ foreach(tool demo_report doctor latency_probe)
   target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
 endforeach()
 
+target_compile_definitions(doctor PRIVATE FDP_STEREO_VERSION="${${PROJECT_NAME}_VERSION}") # catkin's, of package.xml
+
 fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
 target_link_libraries(process_bag PRIVATE fdp_stereo_nodelet)
 
