@@ -23,8 +23,8 @@ constexpr double kOddRowOffsetPx = 0.3;    ///< costs accuracy
 constexpr double kWrongRowOffsetPx = 1.0;  ///< costs the disparity
 constexpr std::size_t kEnoughMatches = 30;
 constexpr double kOutsideRange = 0.05;  ///< of the matches
-constexpr double kMostMatches = 0.7;
-constexpr double kUnequalRates = 1.3;  ///< messages of one topic per message of the other
+constexpr double kManyBeyond = 0.1;     ///< of the matches; wrong ones are fewer
+constexpr double kUnequalRates = 1.3;   ///< messages of one topic per message of the other
 
 template <typename... Parts>
 std::string text(const Parts&... parts) {
@@ -188,17 +188,24 @@ std::vector<float> sortedDisparities(const FeatureMatches& matches) {
   return disparities;
 }
 
-/// False where most of the scene would lie beyond infinity.
+/// Share of the disparities that only things beyond infinity would have; sign -1: if the images were exchanged.
+double shareBeyondInfinity(const std::vector<float>& disparities, const StereoGeometry& geometry, float sign) {
+  constexpr double kBeyondPx = -1.0;
+  const auto beyond = std::count_if(disparities.begin(), disparities.end(),
+                                    [&](float d) { return geometry.published(sign * d) < kBeyondPx; });
+  return static_cast<double>(beyond) / static_cast<double>(disparities.size());
+}
+
+/// False where the images were exchanged: much of the scene would lie beyond infinity, and the other way round it does
+/// not. With principal points that differ, not all of it need do so.
 bool checkViews(const std::vector<float>& disparities, const StereoGeometry& geometry, const Observation& seen,
                 Findings& findings) {
-  constexpr double kBeyondPx = -1.0;
-  const auto beyond =
-      std::count_if(disparities.begin(), disparities.end(), [&](float d) { return geometry.published(d) < kBeyondPx; });
-  const double share = static_cast<double>(beyond) / static_cast<double>(disparities.size());
-  if (share <= kMostMatches) return true;
+  const double as_is = shareBeyondInfinity(disparities, geometry, 1.0F);
+  const double exchanged = shareBeyondInfinity(disparities, geometry, -1.0F);
+  if (as_is < kManyBeyond || exchanged > as_is / 4.0) return true;
   findings.push_back({Verdict::kWrong,
-                      text("left and right images are swapped: ", 100.0 * share,
-                           " % of the matches have a negative disparity, as things beyond infinity would"),
+                      text("left and right images are swapped: ", 100.0 * as_is,
+                           " % of the matches have a disparity that only things beyond infinity would have"),
                       "exchange " + seen.inputs[0].topic + " and " + seen.inputs[2].topic +
                           " (cables, device names or remappings); camera_info is in order"});
   return false;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/io.hpp"
 #include "messages.hpp"
 
 namespace fdp_stereo {
@@ -101,8 +102,24 @@ TEST(Diagnose, ViewsThatAreSwapped) {
   auto messages = test::goodMessages(320, 240);
   std::swap(messages.left, messages.right);
   seen.pair = messages.frame();
-  expectContains(first(seen, Verdict::kWrong), {"images are swapped", "negative disparity",
-                                                "exchange /cam/left/image_rect and /cam/right/image_rect"});
+  expectContains(first(seen, Verdict::kWrong),
+                 {"images are swapped", "beyond infinity", "exchange /cam/left/image_rect and /cam/right/image_rect"});
+}
+
+/// The sample pair, whose principal points differ: exchanged, only its far half lies beyond infinity.
+TEST(Diagnose, ViewsOfVergedCamerasThatAreSwapped) {
+  const std::string folder = FDP_STEREO_SOURCE_DIR "/sample/motorcycle/";
+  const cv::Mat left = readImage(folder + "left.png");
+  const cv::Mat right = readImage(folder + "right.png");
+  test::Messages messages{test::imageMessage(left, "bgr8"), test::imageMessage(right, "bgr8"),
+                          test::cameraInfo(left.cols, left.rows, 994.978, 311.193, 254.877, 0.0),
+                          test::cameraInfo(left.cols, left.rows, 994.978, 342.279, 254.877, -994.978 * 0.193001)};
+  Observation seen = healthy();
+  seen.pair = messages.frame();
+  EXPECT_EQ(first(seen, Verdict::kWrong), "");
+  std::swap(messages.left, messages.right);
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kWrong), {"images are swapped"});
 }
 
 /// Principal points that differ: negative disparities are near things.
