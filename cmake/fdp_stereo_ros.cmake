@@ -39,10 +39,10 @@ fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
 target_link_libraries(images_to_bag PRIVATE fdp_stereo_nodelet yaml-cpp)
 foreach(tool demo_report doctor latency_probe)
   fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
+  # The version is that of package.xml, as catkin has read it.
+  target_compile_definitions(${tool} PRIVATE FDP_STEREO_VERSION="${${PROJECT_NAME}_VERSION}")
   target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
 endforeach()
-
-target_compile_definitions(doctor PRIVATE FDP_STEREO_VERSION="${${PROJECT_NAME}_VERSION}") # catkin's, of package.xml
 
 fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
 target_link_libraries(process_bag PRIVATE fdp_stereo_nodelet)
