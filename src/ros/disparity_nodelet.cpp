@@ -381,6 +381,7 @@ void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& outp
   status_.processing_ms = milliseconds(now - start);
   status_.latency_ms = milliseconds(now - frame.arrival);
   status_.age_ms = secondsBetween(frame.left->header.stamp, ros::Time::now()) * 1e3;
+  status_.apart_ms = secondsBetween(frame.left->header.stamp, frame.right->header.stamp) * 1e3;
   status_.revision = revision;
   status_.frame = std::move(output.report);
 }

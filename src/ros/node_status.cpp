@@ -124,6 +124,7 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.addf("Processing (ms)", "%.1f", now.processing_ms);
   diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
   diagnostics.add("Age of the output (ms)", age(now.age_ms));
+  diagnostics.addf("Stamps of left and right apart (ms)", "%.1f", now.apart_ms);
   for (const StageTime& time : now.frame.pipeline.times)
     diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
   diagnostics.add("Seeds of other sensors", now.frame.external_seeds);

@@ -37,6 +37,7 @@ struct NodeStatus {
   double processing_ms = 0.0;  ///< of the last pair
   double latency_ms = 0.0;     ///< from the arrival of the last pair to its publication
   double age_ms = 0.0;         ///< from its stamp to its publication
+  double apart_ms = 0.0;       ///< from the stamp of its left image to that of its right one
   unsigned revision = 0;       ///< of the parameters it was processed with
   std::string last_error;
   bool error_is_current = false;  ///< the newest pair failed

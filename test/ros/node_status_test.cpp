@@ -115,6 +115,8 @@ TEST_F(Status, Values) {
   EXPECT_EQ(value("Latency (ms)"), "41.3");
   EXPECT_EQ(value("Stage optimizer (ms)"), "20.0");
   EXPECT_EQ(value("Parameter revision"), "3");
+  now_.apart_ms = 40.04;
+  EXPECT_EQ(value("Stamps of left and right apart (ms)"), "40.0");
   now_.age_ms = 51.26;
   EXPECT_EQ(value("Age of the output (ms)"), "51.3");
   for (const double another_clock : {1.77e12, -1.77e12}) {
