@@ -3,9 +3,12 @@
 #
 # The nodelet and its tools. Everything but the topics (disparity_nodelet.cpp) is tested without a roscore.
 add_library(fdp_stereo_nodelet
+  src/ros/camera.cpp
   src/ros/conversions.cpp
+  src/ros/search_range.cpp
   src/ros/params_ros.cpp
   src/ros/reconfigure_server.cpp
+  src/ros/pair_synchronizer.cpp
   src/ros/frame_worker.cpp
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp
@@ -36,6 +39,8 @@ fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
 target_link_libraries(images_to_bag PRIVATE fdp_stereo_nodelet yaml-cpp)
 foreach(tool demo_report doctor latency_probe)
   fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
+  # The version is that of package.xml, as catkin has read it.
+  target_compile_definitions(${tool} PRIVATE FDP_STEREO_VERSION="${${PROJECT_NAME}_VERSION}")
   target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
 endforeach()
 

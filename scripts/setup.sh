@@ -17,7 +17,7 @@ build_packages=(
 )
 run_packages=(
   python3-roslaunch rosbash rosout python3-rosbag python3-rostopic python3-rosnode python3-rosparam
-  python3-stereo-msgs python3-sensor-msgs python3-numpy python3-cv-bridge python3-opencv
+  python3-stereo-msgs python3-sensor-msgs python3-diagnostic-msgs python3-numpy python3-cv-bridge python3-opencv
   image-transport-tools topic-tools libimage-proc-dev ros-image-proc libstereo-image-proc-dev ros-stereo-image-proc
   libdepth-image-proc-dev
 )

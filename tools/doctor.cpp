@@ -42,6 +42,8 @@ class Doctor {
     seen_.node = node_.resolveName(node);
     ros::param::get(seen_.node + "/min_disparity", seen_.range.min);
     ros::param::get(seen_.node + "/disparity_range", seen_.range.count);
+    ros::param::get(seen_.node + "/approximate_sync", seen_.approximate_sync);
+    ros::param::get(seen_.node + "/approximate_sync_tolerance", seen_.tolerance_s);
     if (newest_.left && newest_.right && newest_.left_info && newest_.right_info) seen_.pair = newest_;
     return seen_;
   }
@@ -76,6 +78,11 @@ class Doctor {
   Observation seen_;
 };
 
+constexpr char kHelp[] =
+    "Looks at a running stereo camera and says what is missing or off, and what to type.\n"
+    "  ROS_NAMESPACE=stereo rosrun fdp_stereo doctor [_seconds:=10] [_node:=disparity]\n"
+    "or roslaunch fdp_stereo doctor.launch. Exit code 0 only if nothing is wrong.\n";
+
 const char* word(Verdict verdict) {
   switch (verdict) {
     case Verdict::kGood:
@@ -90,6 +97,11 @@ const char* word(Verdict verdict) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::string argument = argc == 2 ? argv[1] : "";
+  if (argument == "--version" || argument == "--help") {
+    std::printf("doctor %s\n%s", FDP_STEREO_VERSION, argument == "--help" ? kHelp : "");
+    return 0;
+  }
   ros::init(argc, argv, "doctor", ros::init_options::AnonymousName);
   ros::NodeHandle private_node("~");
   const double seconds = std::max(0.1, private_node.param("seconds", 10.0));

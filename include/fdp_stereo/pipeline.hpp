@@ -13,19 +13,23 @@ namespace fdp_stereo {
 
 class Scaling;
 
-/// All that one run found.
-struct PipelineResult {
-  cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
-  cv::Mat confidence;  ///< CV_32FC1, 0..1
-  FeatureMatches matches;
+/// What one run tells of itself.
+struct PipelineStats {
   std::string feature_note;  ///< why another detector than the wanted one ran; empty otherwise
-  Seeds seeds;
-  Seeds rejected_seeds;
-  Seeds quasi_dense_seeds;  ///< of the first matching, where that is enabled
   RowAlignment row_alignment;
   double propagated_share = 0.0;  ///< share of the pixels whose costs the seeds changed
   std::vector<double> energies;   ///< of the optimiser, per iteration
   std::vector<StageTime> times;   ///< in the order of the stages
+};
+
+/// All that one run found.
+struct PipelineResult : PipelineStats {
+  cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
+  cv::Mat confidence;  ///< CV_32FC1, 0..1
+  FeatureMatches matches;
+  Seeds seeds;
+  Seeds rejected_seeds;
+  Seeds quasi_dense_seeds;  ///< of the first matching, where that is enabled
 };
 
 /// What drawSeeds() shows of a result.
@@ -57,7 +61,7 @@ class Pipeline {
  private:
   struct State;
   struct Frame;
-  RowAlignment alignPair(const FeatureMatches& matches, StereoPair& pair);
+  RowAlignment alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair);
   void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
   void spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume);
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);

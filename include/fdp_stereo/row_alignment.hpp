@@ -59,7 +59,11 @@ struct RowAlignment {
 /// Fits by iteratively reweighted least squares (Geman-McClure weight, from a wide scale down to 0.35 px). An order is
 /// taken only if matches held out of the fit (five spatial folds) support it significantly, and if there are enough of
 /// them, spread over the image.
-RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
+///
+/// given_px: px of the images as given per px of the matches, where these are of smaller images; note, warning and
+/// warn_px speak of the images as given.
+RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params,
+                                  double given_px = 1.0);
 
 /// The right image resampled so that its rows meet the left's. Returns the image itself for the identity.
 /// 8U or 16U, 1 or 3 channels, of the model's size; std::invalid_argument otherwise. Borders are replicated.
@@ -79,7 +83,8 @@ cv::Mat drawRowAlignment(const cv::Mat& left, const FeatureMatches& matches, con
 class RowAlignmentAccumulator {
  public:
   /// Takes the matches of the next frame (as given, not aligned). kPerFrame: looks at this frame alone.
-  RowAlignment update(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params);
+  RowAlignment update(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params,
+                      double given_px = 1.0);
   void reset();
 
  private:

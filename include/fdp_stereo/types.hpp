@@ -52,8 +52,7 @@ struct Seed {
   float x = 0.0F;
   float y = 0.0F;
   float d = 0.0F;
-  float trust = 1.0F;     ///< 0..1, share of such seeds that are right
-  float sigma_px = 0.5F;  ///< standard deviation of d where the seed is right
+  float trust = 1.0F;  ///< 0..1, share of such seeds that are right
   SeedSource source = SeedSource::kFeature;
 };
 using Seeds = std::vector<Seed>;

@@ -162,7 +162,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   result.feature_note = std::move(features.note);
   clock.done("feature_matching");
 
-  result.row_alignment = alignPair(result.matches, frame.pair);
+  result.row_alignment = alignPair(result.matches, given.left.rows, frame.pair);
   clock.done("row_alignment");
 
   state_->matching_cost.compute(frame.pair, frame.search, params_.matching_cost, costScale(params_), state_->volume);
@@ -183,10 +183,11 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   return result;
 }
 
-RowAlignment Pipeline::alignPair(const FeatureMatches& matches, StereoPair& pair) {
+RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair) {
   if (!params_.row_alignment.enabled) return {};
   const cv::Size size = pair.left.size();
-  RowAlignment alignment = state_->row_alignment.update(matches, size, params_.row_alignment);
+  const double given_px = static_cast<double>(given_rows) / size.height;
+  RowAlignment alignment = state_->row_alignment.update(matches, size, params_.row_alignment, given_px);
   const bool shared = pair.right.data == pair.right_grey.data;
   pair.right = alignRows(pair.right, alignment.model);
   pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);

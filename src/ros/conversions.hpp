@@ -3,36 +3,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <stereo_msgs/DisparityImage.h>
 
+#include "camera.hpp"
 #include "fdp_stereo/types.hpp"
 
-/// Messages to and from the core, as pure functions: no node, no clock, no state.
+/// Images and maps to and from the core, as pure functions: no node, no clock, no state.
 namespace fdp_stereo {
-
-/// A text from a message as it may stand in a log line: in quotes, at most 40 characters, what is not printable as '?'.
-std::string quoteForLog(const std::string& text);
-
-/// Names of the inputs for messages to people; relative or resolved.
-struct StereoTopics {
-  std::string left_image = "left/image_rect";
-  std::string right_image = "right/image_rect";
-  std::string left_info = "left/camera_info";
-  std::string right_info = "right/camera_info";
-};
-
-/// Geometry of a rectified pair in px of the images as published (binning and region of interest applied).
-struct StereoGeometry {
-  double focal_px = 0.0;
-  double baseline_m = 0.0;    ///< > 0
-  double cx_offset_px = 0.0;  ///< cx_left - cx_right: 0 for parallel cameras, not 0 for verged ones
-  /// The disparity as published: (x_l - x_r) - (cx_l - cx_r), so that Z = f T / d.
-  double published(double disparity) const { return disparity - cx_offset_px; }
-};
 
 /// Pixels of the image. Native 8 and 16 bit mono and BGR share the message's memory (keep the message, never write);
 /// the rest is converted. Returns CV_8U or CV_16U, 1 channel or 3 (BGR), row step as in the message.
@@ -42,11 +21,6 @@ cv::Mat decodeImage(const sensor_msgs::Image& message, const std::string& topic)
 
 /// The same for 32FC1 (depth, disparity). Throws std::invalid_argument naming `topic`.
 cv::Mat decodeFloatImage(const sensor_msgs::Image& message, const std::string& topic);
-
-/// Checks a calibration before anything is computed from it. image_size: px of the left image as received. Throws
-/// std::invalid_argument where no right depth can come out; appends to `warnings` where the data are usable but odd.
-StereoGeometry stereoGeometry(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
-                              cv::Size image_size, const StereoTopics& topics, std::vector<std::string>& warnings);
 
 /// DisparityImage of a map (CV_32FC1 px, NaN = none). Invalid pixels are min_disparity - 1; min, max and invalid are in
 /// published units (StereoGeometry::published). delta_d: the smallest step of the refinement, px.

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "fdp_stereo/feature_matching.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/row_alignment.hpp"
+#include "search_range.hpp"
 #include "stamps.hpp"
 
 namespace fdp_stereo {
@@ -23,6 +23,8 @@ constexpr double kOddRowOffsetPx = 0.3;    ///< costs accuracy
 constexpr double kWrongRowOffsetPx = 1.0;  ///< costs the disparity
 constexpr std::size_t kEnoughMatches = 30;
 constexpr double kOutsideRange = 0.05;  ///< of the matches
+constexpr double kManyBeyond = 0.1;     ///< of the matches; wrong ones are fewer
+constexpr double kUnequalRates = 1.3;   ///< messages of one topic per message of the other
 
 template <typename... Parts>
 std::string text(const Parts&... parts) {
@@ -61,23 +63,78 @@ double nearest(const std::vector<ros::Time>& stamps, const ros::Time& stamp) {
   return best;
 }
 
+/// How two topics meet in time; the slower one is asked.
+struct Meeting {
+  double share = 0.0;    ///< of the stamps of the slower topic that the other one has too
+  double apart_s = 0.0;  ///< median distance to the nearest stamp of the other
+  bool unequal_rates = false;
+};
+
+Meeting meetingOf(const std::vector<ros::Time>& a, const std::vector<ros::Time>& b) {
+  const auto& slow = a.size() <= b.size() ? a : b;
+  const auto& fast = a.size() <= b.size() ? b : a;
+  std::vector<double> distances;
+  for (const ros::Time& stamp : slow) distances.push_back(nearest(fast, stamp));
+  std::sort(distances.begin(), distances.end());
+  const auto met = std::count(distances.begin(), distances.end(), 0.0);
+  const auto count = static_cast<double>(slow.size());
+  return {static_cast<double>(met) / count, distances[distances.size() / 2],
+          static_cast<double>(fast.size()) > kUnequalRates * count && fast.size() > slow.size() + 2};
+}
+
+/// Stamps that do not meet, as far as the node does not put up with it.
+Finding judgeApart(const Observation& seen, const std::string& told, double apart_s) {
+  const auto slowest = std::min_element(seen.inputs.begin(), seen.inputs.end(), [](const auto& a, const auto& b) {
+                         return a.stamps.size() < b.stamps.size();
+                       })->stamps.size();
+  if (seen.approximate_sync && seen.disparities > 0) {
+    return {Verdict::kGood, told + ", which approximate_sync puts up with", ""};
+  }
+  if (seen.approximate_sync) {
+    const bool too_far = seen.tolerance_s > 0.0 && apart_s > seen.tolerance_s;
+    return {Verdict::kWrong, told,
+            too_far ? text("synchronise the cameras better, or start stereo.launch with approximate_sync_tolerance "
+                           "above ",
+                           apart_s, " s")
+                    : "start stereo.launch with a larger queue_size"};
+  }
+  if (2 * seen.disparities > slowest) {
+    return {Verdict::kOdd, told + "; disparities come all the same, so they were lost on the way to this program",
+            "look at the load of the machine and its network"};
+  }
+  return {Verdict::kWrong, told,
+          "trigger the cameras together and give camera_info the stamp of its image, or start stereo.launch with "
+          "approximate_sync:=true"};
+}
+
 void checkStamps(const Observation& seen, Findings& findings) {
+  const TopicObservation& left = seen.inputs[0];
   for (std::size_t i = 1; i < seen.inputs.size(); ++i) {
-    const auto& left = seen.inputs[0].stamps;
-    const std::set<ros::Time> other(seen.inputs[i].stamps.begin(), seen.inputs[i].stamps.end());
-    const auto met = std::count_if(left.begin(), left.end(), [&](const ros::Time& t) { return other.count(t) > 0; });
-    const double share = static_cast<double>(met) / static_cast<double>(left.size());
-    if (share >= kEnoughInStep) continue;
-    const double apart_ms = 1e3 * nearest(seen.inputs[i].stamps, left[left.size() / 2]);
-    findings.push_back({Verdict::kWrong,
-                        text("only ", 100.0 * share, " % of the stamps of ", seen.inputs[0].topic, " are met by ",
-                             seen.inputs[i].topic, "; the nearest is ", apart_ms, " ms away"),
-                        "trigger the cameras together, or start stereo.launch with approximate_sync:=true"});
+    const TopicObservation& other = seen.inputs[i];
+    const Meeting meeting = meetingOf(left.stamps, other.stamps);
+    if (meeting.unequal_rates) {
+      const TopicObservation& slower = other.stamps.size() < left.stamps.size() ? other : left;
+      findings.push_back({Verdict::kOdd,
+                          text("the rates differ: ", left.stamps.size(), " messages of ", left.topic, " and ",
+                               other.stamps.size(), " of ", other.topic, " in ", seen.seconds, " s"),
+                          "no more pairs than messages of " + slower.topic +
+                              " can come out: let the driver, or throttle, give all four topics one rate"});
+    }
+    if (meeting.share >= kEnoughInStep) continue;
+    findings.push_back(judgeApart(seen,
+                                  text("only ", 100.0 * meeting.share, " % of the stamps of ", left.topic, " and ",
+                                       other.topic, " are equal; they are ", 1e3 * meeting.apart_s, " ms apart"),
+                                  meeting.apart_s));
   }
 }
 
-/// The images as the stages see them, where images and calibration can be used.
-std::optional<StereoPair> checkPair(const Observation& seen, Findings& findings) {
+/// A pair that can be used.
+struct CheckedPair {
+  StereoPair images;  ///< as the stages see them
+  StereoGeometry geometry;
+};
+
+std::optional<CheckedPair> checkPair(const Observation& seen, Findings& findings) {
   const StereoFrame& frame = *seen.pair;
   const StereoTopics topics{seen.inputs[0].topic, seen.inputs[2].topic, seen.inputs[1].topic, seen.inputs[3].topic};
   try {
@@ -86,13 +143,13 @@ std::optional<StereoPair> checkPair(const Observation& seen, Findings& findings)
     std::vector<std::string> warnings;
     const StereoGeometry geometry = stereoGeometry(*frame.left_info, *frame.right_info, left.size(), topics, warnings);
     for (const std::string& warning : warnings) {
-      findings.push_back({Verdict::kOdd, warning, "use the two files of one stereo calibration"});
+      findings.push_back({Verdict::kOdd, warning, "mend camera_info, or calibrate the pair anew"});
     }
     findings.push_back({Verdict::kGood,
                         text(left.cols, " x ", left.rows, " px ", frame.left->encoding, ", f = ", geometry.focal_px,
                              " px, baseline ", geometry.baseline_m, " m"),
                         ""});
-    return prepareImages(left, right);
+    return CheckedPair{prepareImages(left, right), geometry};
   } catch (const std::invalid_argument& error) {
     const std::string told = error.what();  // begins with the topic
     findings.push_back(
@@ -101,13 +158,14 @@ std::optional<StereoPair> checkPair(const Observation& seen, Findings& findings)
   }
 }
 
+/// Both signs, so that exchanged views are found too.
 FeatureMatches matchWidely(const StereoPair& pair) {
   FeatureMatchingParams params;
   params.detector = FeatureDetector::kSift;
   params.max_ratio = 0.7;
   params.max_row_difference_px = 8.0;
   const int half = pair.left.cols / 2;
-  return matchFeatures(pair, {-half / 4, half + half / 4}, params).matches;
+  return matchFeatures(pair, {-half, 2 * half + 1}, params).matches;
 }
 
 void checkRows(const FeatureMatches& matches, cv::Size size, Findings& findings) {
@@ -123,10 +181,45 @@ void checkRows(const FeatureMatches& matches, cv::Size size, Findings& findings)
   }
 }
 
-void checkRange(const FeatureMatches& matches, const Observation& seen, Findings& findings) {
+std::vector<float> sortedDisparities(const FeatureMatches& matches) {
   std::vector<float> disparities;
   for (const FeatureMatch& match : matches) disparities.push_back(match.disparity());
   std::sort(disparities.begin(), disparities.end());
+  return disparities;
+}
+
+/// Share of the disparities that only things beyond infinity would have; sign -1: if the images were exchanged.
+double shareBeyondInfinity(const std::vector<float>& disparities, const StereoGeometry& geometry, float sign) {
+  constexpr double kBeyondPx = -1.0;
+  const auto beyond = std::count_if(disparities.begin(), disparities.end(),
+                                    [&](float d) { return geometry.published(sign * d) < kBeyondPx; });
+  return static_cast<double>(beyond) / static_cast<double>(disparities.size());
+}
+
+/// False where the images were exchanged: much of the scene would lie beyond infinity, and the other way round it does
+/// not. With principal points that differ, not all of it need do so.
+bool checkViews(const std::vector<float>& disparities, const StereoGeometry& geometry, const Observation& seen,
+                Findings& findings) {
+  const double as_is = shareBeyondInfinity(disparities, geometry, 1.0F);
+  const double exchanged = shareBeyondInfinity(disparities, geometry, -1.0F);
+  if (as_is < kManyBeyond || exchanged > as_is / 4.0) return true;
+  findings.push_back({Verdict::kWrong,
+                      text("left and right images are swapped: ", 100.0 * as_is,
+                           " % of the matches have a disparity that only things beyond infinity would have"),
+                      "exchange " + seen.inputs[0].topic + " and " + seen.inputs[2].topic +
+                          " (cables, device names or remappings); camera_info is in order"});
+  return false;
+}
+
+std::string rangeCommand(const std::string& node, double first, double last) {
+  constexpr int kMargin = 4;
+  const int min = static_cast<int>(std::floor(first)) - kMargin;
+  const int count = static_cast<int>(std::ceil(last)) + kMargin - min + 1;
+  return text("rosrun dynamic_reconfigure dynparam set ", node, " \"{min_disparity: ", min,
+              ", disparity_range: ", count, "}\"");
+}
+
+void checkMatches(const std::vector<float>& disparities, const Observation& seen, Findings& findings) {
   const auto at = [&](double share) {
     return disparities[static_cast<std::size_t>(share * static_cast<double>(disparities.size() - 1))];
   };
@@ -137,25 +230,37 @@ void checkRange(const FeatureMatches& matches, const Observation& seen, Findings
                                 seen.range.max(), " px; the scene has ", at(0.02), " to ", at(0.98), " px");
   if (share <= kOutsideRange) {
     findings.push_back({Verdict::kGood, told, ""});
-    return;
+  } else {
+    findings.push_back({Verdict::kWrong, told, rangeCommand(seen.node, at(0.02), at(0.98))});
   }
-  constexpr int kMargin = 4;
-  const int min = static_cast<int>(std::floor(at(0.02))) - kMargin;
-  const int count = static_cast<int>(std::ceil(at(0.98))) + kMargin - min + 1;
-  findings.push_back({Verdict::kWrong, told,
-                      text("rosrun dynamic_reconfigure dynparam set ", seen.node, " \"{min_disparity: ", min,
-                           ", disparity_range: ", count, "}\"")});
 }
 
-void checkScene(const StereoPair& pair, const Observation& seen, Findings& findings) {
-  const FeatureMatches matches = matchWidely(pair);
+/// The range without the scene: what it can see at all.
+void checkVisible(const CheckedPair& pair, const Observation& seen, Findings& findings) {
+  const int width = pair.images.left.cols;
+  try {
+    std::vector<std::string> warnings;
+    checkRange(seen.range, width, pair.geometry, warnings);
+    for (const std::string& warning : warnings) {
+      findings.push_back({Verdict::kOdd, warning, "see docs/tuning.md: the range of disparities"});
+    }
+    findings.push_back({Verdict::kGood, visibleDistances(seen.range, width, pair.geometry), ""});
+  } catch (const std::invalid_argument& error) {
+    findings.push_back({Verdict::kWrong, error.what(), rangeCommand(seen.node, 0.0, 63.0)});
+  }
+}
+
+void checkScene(const CheckedPair& pair, const Observation& seen, Findings& findings) {
+  checkVisible(pair, seen, findings);
+  const FeatureMatches matches = matchWidely(pair.images);
   if (matches.size() < kEnoughMatches) {
     findings.push_back({Verdict::kOdd, text("only ", matches.size(), " matches between the views"),
                         "show the cameras something with texture, and check focus, exposure and that both see it"});
     return;
   }
-  checkRows(matches, pair.left.size(), findings);
-  checkRange(matches, seen, findings);
+  checkRows(matches, pair.images.left.size(), findings);
+  const std::vector<float> disparities = sortedDisparities(matches);
+  if (checkViews(disparities, pair.geometry, seen, findings)) checkMatches(disparities, seen, findings);
 }
 
 void checkOutput(const Observation& seen, Findings& findings) {
@@ -165,8 +270,10 @@ void checkOutput(const Observation& seen, Findings& findings) {
     findings.push_back(
         {Verdict::kGood, text("disparity: ", static_cast<double>(seen.disparities) / seen.seconds, " Hz"), ""});
   } else if (seen.disparity_publishers == 0) {
-    findings.push_back({Verdict::kWrong, seen.node + " does not run: nobody publishes disparity",
-                        "start it: roslaunch fdp_stereo stereo.launch"});
+    findings.push_back(
+        {Verdict::kWrong, seen.node + " does not run: nobody publishes disparity",
+         "start it: roslaunch fdp_stereo stereo.launch; a nodelet manager that was started anew has lost "
+         "its nodelets"});
   } else if (faulty) {
     findings.push_back({Verdict::kWrong, "no disparity came from " + seen.node, "cure what is WRONG above first"});
   } else {

@@ -32,6 +32,8 @@ struct Observation {
   std::size_t disparities = 0;  ///< messages from the node
   std::string node;             ///< its resolved name, for what to type
   DisparityRange range;         ///< that it searches
+  bool approximate_sync = false;
+  double tolerance_s = 0.0;  ///< of the approximate synchronisation; 0 = none
 };
 
 enum class Verdict { kGood, kOdd, kWrong };

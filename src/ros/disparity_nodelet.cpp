@@ -10,10 +10,6 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/exception.h>
 #include <image_transport/image_transport.h>
-#include <message_filters/pass_through.h>
-#include <message_filters/sync_policies/approximate_time.h>
-#include <message_filters/sync_policies/exact_time.h>
-#include <message_filters/synchronizer.h>
 #include <nodelet/nodelet.h>
 #include <ros/master.h>
 #include <pluginlib/class_list_macros.hpp>
@@ -21,10 +17,13 @@
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
 #include "node_status.hpp"
+#include "pair_synchronizer.hpp"
 #include "periodic_task.hpp"
 #include "reconfigure_server.hpp"
 #include "seed_sources.hpp"
 #include "stamps.hpp"
+#include "start_params.hpp"
+#include "text.hpp"
 #include "thread_priority.hpp"
 
 namespace fdp_stereo {
@@ -32,23 +31,42 @@ namespace {
 
 using sensor_msgs::CameraInfo;
 using sensor_msgs::CameraInfoConstPtr;
-using sensor_msgs::Image;
 using sensor_msgs::ImageConstPtr;
 using Clock = std::chrono::steady_clock;
-using ExactPolicy = message_filters::sync_policies::ExactTime<Image, CameraInfo, Image, CameraInfo>;
-using ApproximatePolicy = message_filters::sync_policies::ApproximateTime<Image, CameraInfo, Image, CameraInfo>;
 
-/// A stamp that is older than its predecessor by more than this is a bag that starts again, not a late message.
-constexpr double kJumpBack = 0.5;           // s
 constexpr double kLongestTolerance = 60.0;  // s
 constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr double kWatchPeriod = 15.0;       // s
-constexpr auto kLogPeriod = std::chrono::seconds(10);
+constexpr auto kLogPeriod = std::chrono::seconds(30);
 constexpr std::size_t kMaxLogLines = 20;
+constexpr char kOutOfMemory[] =
+    "out of memory; lower disparity_range or scale, and max_memory_mb to what this machine has";
 
 double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
 
-enum Input { kLeftImage, kLeftInfo, kRightImage, kRightInfo };
+PairSynchronizerParams readSynchronizerParams(StartParams& start, const std::function<void(std::string)>& warn) {
+  PairSynchronizerParams params;
+  params.queue_size = start.param("queue_size", params.queue_size);
+  params.approximate = start.param("approximate_sync", params.approximate);
+  params.tolerance_s = start.param("approximate_sync_tolerance", params.tolerance_s);
+  if (params.queue_size < 1) {
+    warn(text("~queue_size = ", params.queue_size, " must be at least 1; using 1"));
+    params.queue_size = 1;
+  }
+  if (!(params.tolerance_s >= 0.0 && params.tolerance_s <= kLongestTolerance)) {
+    warn(text("~approximate_sync_tolerance = ", params.tolerance_s, " s must be 0 to ", kLongestTolerance,
+              " s; using 0, which is none"));
+    params.tolerance_s = 0.0;
+  }
+  return params;
+}
+
+/// s; the fallback where what is given is no sensible period.
+std::chrono::duration<double> periodOf(double wanted_s, double fallback_s) {
+  constexpr double kShortest = 0.02;   // s
+  constexpr double kLongest = 3600.0;  // s
+  return std::chrono::duration<double>(wanted_s >= kShortest && wanted_s <= kLongest ? wanted_s : fallback_s);
+}
 
 }  // namespace
 
@@ -59,7 +77,10 @@ class DisparityNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() override;
-  std::chrono::duration<double> period(const std::string& name, double fallback_s) const;
+  void start();
+  void release();
+  void nameInputs();
+  void startReports(std::chrono::duration<double> diagnostic_period, std::chrono::duration<double> watch_period);
   void advertise();
   void onSubscriberChange();
   WantedOutputs wanted() const;
@@ -67,11 +88,10 @@ class DisparityNodelet : public nodelet::Nodelet {
   void subscribeImages(const ros::TransportHints& hints);
   void unsubscribe();
 
-  template <typename Message>
-  void onInput(Input input, const boost::shared_ptr<const Message>& message, message_filters::PassThrough<Message>& to);
-  void resetSynchronizer();
-  void onPair(const ImageConstPtr& left, const CameraInfoConstPtr& left_info, const ImageConstPtr& right,
-              const CameraInfoConstPtr& right_info);
+  template <typename MessagePtr>
+  void onInput(PairSynchronizer::Input input, const MessagePtr& message);
+  void onPair(const StereoFrame& frame);
+  void onRestart();
   bool overRate(const ros::Time& stamp);
 
   void work(const StereoFrame& frame, const std::atomic<bool>& cancel);
@@ -80,6 +100,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   void recordSuccess(const StereoFrame& frame, FrameOutput& output, Clock::time_point start, unsigned revision);
   void recordFailure(const std::string& problem);
 
+  bool isNew(const std::string& text);
   void warn(const std::string& text);
   NodeStatus snapshot();
   void onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& diagnostics);
@@ -91,24 +112,18 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::unique_ptr<FrameProcessor> processor_;
   std::atomic<bool> forget_{false};  ///< tells the worker that the stamps jumped back
 
-  // Inputs: callbacks, then one pass-through per topic, so that the synchroniser can be replaced.
   std::unique_ptr<image_transport::ImageTransport> transport_;
   image_transport::Subscriber left_image_, right_image_;
   ros::Subscriber left_info_, right_info_;
-  message_filters::PassThrough<Image> left_image_filter_, right_image_filter_;
-  message_filters::PassThrough<CameraInfo> left_info_filter_, right_info_filter_;
-  std::unique_ptr<message_filters::Synchronizer<ExactPolicy>> exact_;
-  std::unique_ptr<message_filters::Synchronizer<ApproximatePolicy>> approximate_;
-  int queue_size_ = 5;
-  bool approximate_sync_ = false;
-  double tolerance_s_ = 0.0;
+  std::unique_ptr<PairSynchronizer> synchronizer_;
   ros::Time last_taken_;
 
   // Outputs. The mutex is held over advertise: a subscriber may come before the publisher is stored.
   std::mutex connect_mutex_;
   bool subscribed_ = false;
-  ros::Publisher disparity_, depth_info_;
-  image_transport::Publisher depth_, confidence_, seeds_image_, disparity_color_;
+  ros::Publisher disparity_;
+  image_transport::CameraPublisher depth_;
+  image_transport::Publisher depth_by_old_name_, confidence_, seeds_image_, disparity_color_;
 
   std::mutex status_mutex_;
   NodeStatus status_;
@@ -121,76 +136,84 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::unique_ptr<FrameWorker> worker_;
 };
 
+DisparityNodelet::~DisparityNodelet() { release(); }
+
 /// The worker first, for a publisher that is shut down must not be used; then from the sources of callbacks to what
 /// they use: shutdown() waits for a callback that runs in another thread.
-DisparityNodelet::~DisparityNodelet() {
+void DisparityNodelet::release() {
   if (worker_) worker_->stop();
   disparity_.shutdown();
   depth_.shutdown();
-  depth_info_.shutdown();
+  depth_by_old_name_.shutdown();
   confidence_.shutdown();
   seeds_image_.shutdown();
   disparity_color_.shutdown();
   diagnostics_task_.reset();
+  diagnostics_.reset();
   watch_task_.reset();
   if (worker_) unsubscribe();
   worker_.reset();
+  seeds_.reset();
   reconfigure_.reset();
 }
 
+/// The loader of a nodelet that throws takes the callback queue away before the nodelet: nothing may be left in it.
 void DisparityNodelet::onInit() {
-  ros::NodeHandle& node = getNodeHandle();
-  ros::NodeHandle& private_node = getPrivateNodeHandle();
-  topics_ = {node.resolveName("left/image_rect"), node.resolveName("right/image_rect"),
-             node.resolveName("left/camera_info"), node.resolveName("right/camera_info")};
-  status_.inputs[kLeftImage].topic = topics_.left_image;
-  status_.inputs[kLeftInfo].topic = topics_.left_info;
-  status_.inputs[kRightImage].topic = topics_.right_image;
-  status_.inputs[kRightInfo].topic = topics_.right_info;
-  private_node.param("queue_size", queue_size_, queue_size_);
-  private_node.param("approximate_sync", approximate_sync_, approximate_sync_);
-  private_node.param("approximate_sync_tolerance", tolerance_s_, tolerance_s_);
-  if (queue_size_ < 1) {
-    warn("~queue_size = " + std::to_string(queue_size_) + " must be at least 1; using 1");
-    queue_size_ = 1;
+  try {
+    start();
+  } catch (const std::exception& error) {
+    NODELET_FATAL("cannot start: %s", error.what());
+    release();
+    throw;
   }
-  if (!(tolerance_s_ >= 0.0 && tolerance_s_ <= kLongestTolerance)) {
-    warn("~approximate_sync_tolerance = " + std::to_string(tolerance_s_) + " s must be 0 to " +
-         std::to_string(kLongestTolerance) + " s; using 0, which is none");
-    tolerance_s_ = 0.0;
-  }
-  status_.approximate_sync = approximate_sync_;
-  resetSynchronizer();
+}
 
-  reconfigure_ = std::make_unique<ReconfigureServer>(
-      private_node,
-      std::vector<std::string>{"preset", "queue_size", "approximate_sync", "approximate_sync_tolerance",
-                               "image_transport", "watch_period", "diagnostic_period", "seeds_fixed_frame"},
-      [this](const std::string& message) { warn(message); });
-  seeds_ = std::make_unique<SeedSources>(node, private_node);
+void DisparityNodelet::start() {
+  ros::NodeHandle& node = getNodeHandle();
+  nameInputs();
+  StartParams params(getPrivateNodeHandle());
+  const auto say = [this](const std::string& message) { warn(message); };
+  const PairSynchronizerParams sync = readSynchronizerParams(params, say);
+  status_.approximate_sync = sync.approximate;
+  params.param<std::string>("image_transport", "raw");  // which image_transport reads itself
+  const auto diagnostic_period = periodOf(params.param("diagnostic_period", kDiagnosticsPeriod), kDiagnosticsPeriod);
+  const auto watch_period = periodOf(params.param("watch_period", kWatchPeriod), kWatchPeriod);
+  seeds_ = std::make_unique<SeedSources>(node, params);
+  reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), params.names(), say);
+
+  synchronizer_ = std::make_unique<PairSynchronizer>(
+      sync, PairSynchronizer::Callbacks{[this](const StereoFrame& frame) { onPair(frame); }, [this] { onRestart(); },
+                                        [this](PairSynchronizer::Input input, const ros::Time& stamp) {
+                                          warn(text(status_.inputs[input].topic, ": stamp ", stamp.toSec(),
+                                                    " s is too far from the others'; check the clock of the camera"));
+                                        }});
   processor_ = std::make_unique<FrameProcessor>(
-      topics_, [this](const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                      const StereoGeometry& geometry, std::vector<std::string>& warnings) {
-        return seeds_->collect(frame, settings, left, geometry, warnings);
-      });
+      topics_, [this](const SeedRequest& request) { return seeds_->collect(request); });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
-
-  diagnosed_at_ = watched_at_ = Clock::now();
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(node, private_node, getName());
-  diagnostics_->setHardwareID("none");
-  diagnostics_->add("Disparity", this, &DisparityNodelet::onDiagnostics);
-  diagnostics_task_ = std::make_unique<PeriodicTask>(period("diagnostic_period", kDiagnosticsPeriod),
-                                                     [this] { diagnostics_->force_update(); });
-  // The question to a master that is out of reach may take long: not in the queue of the images.
-  watch_task_ = std::make_unique<PeriodicTask>(period("watch_period", kWatchPeriod), [this] { watch(); });
+  startReports(diagnostic_period, watch_period);
   advertise();
 }
 
-std::chrono::duration<double> DisparityNodelet::period(const std::string& name, double fallback_s) const {
-  constexpr double kShortest = 0.02;  // s
-  const double wanted = getPrivateNodeHandle().param(name, fallback_s);
-  return std::chrono::duration<double>(wanted >= kShortest && wanted <= 3600.0 ? wanted : fallback_s);
+void DisparityNodelet::nameInputs() {
+  const ros::NodeHandle& node = getNodeHandle();
+  topics_ = {node.resolveName("left/image_rect"), node.resolveName("right/image_rect"),
+             node.resolveName("left/camera_info"), node.resolveName("right/camera_info")};
+  status_.inputs[PairSynchronizer::kLeftImage].topic = topics_.left_image;
+  status_.inputs[PairSynchronizer::kLeftInfo].topic = topics_.left_info;
+  status_.inputs[PairSynchronizer::kRightImage].topic = topics_.right_image;
+  status_.inputs[PairSynchronizer::kRightInfo].topic = topics_.right_info;
+}
+
+void DisparityNodelet::startReports(std::chrono::duration<double> diagnostic_period,
+                                    std::chrono::duration<double> watch_period) {
+  diagnosed_at_ = watched_at_ = Clock::now();
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
+  diagnostics_->setHardwareID("none");
+  diagnostics_->add("Disparity", this, &DisparityNodelet::onDiagnostics);
+  diagnostics_task_ = std::make_unique<PeriodicTask>(diagnostic_period, [this] { diagnostics_->force_update(); });
+  // The question to a master that is out of reach may take long: not in the queue of the images.
+  watch_task_ = std::make_unique<PeriodicTask>(watch_period, [this] { watch(); });
 }
 
 void DisparityNodelet::advertise() {
@@ -201,8 +224,9 @@ void DisparityNodelet::advertise() {
   const image_transport::SubscriberStatusCallback image_changed =
       [this](const image_transport::SingleSubscriberPublisher&) { onSubscriberChange(); };
   disparity_ = node.advertise<stereo_msgs::DisparityImage>("disparity", 1, changed, changed);
-  depth_ = transport_->advertise("depth", 1, image_changed, image_changed);
-  depth_info_ = node.advertise<CameraInfo>("depth/camera_info", 1, changed, changed);
+  // As image_transport's CameraSubscriber finds it: depth/image_rect with depth/camera_info.
+  depth_ = transport_->advertiseCamera("depth/image_rect", 1, image_changed, image_changed, changed, changed);
+  depth_by_old_name_ = transport_->advertise("depth", 1, image_changed, image_changed);
   confidence_ = transport_->advertise("confidence", 1, image_changed, image_changed);
   seeds_image_ = transport_->advertise("seeds/image", 1, image_changed, image_changed);
   disparity_color_ = transport_->advertise("disparity_color", 1, image_changed, image_changed);
@@ -224,7 +248,7 @@ void DisparityNodelet::onSubscriberChange() {
 WantedOutputs DisparityNodelet::wanted() const {
   WantedOutputs outputs;
   outputs.disparity = disparity_.getNumSubscribers() > 0;
-  outputs.depth = depth_.getNumSubscribers() + depth_info_.getNumSubscribers() > 0;
+  outputs.depth = depth_.getNumSubscribers() + depth_by_old_name_.getNumSubscribers() > 0;
   outputs.confidence = confidence_.getNumSubscribers() > 0;
   outputs.seeds = seeds_image_.getNumSubscribers() > 0;
   outputs.disparity_color = disparity_color_.getNumSubscribers() > 0;
@@ -242,10 +266,10 @@ void DisparityNodelet::subscribe() {
     subscribeImages(no_delay);
   }
   left_info_ = node.subscribe<CameraInfo>(
-      "left/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kLeftInfo, m, left_info_filter_); },
+      "left/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(PairSynchronizer::kLeftInfo, m); },
       ros::VoidConstPtr(), no_delay);
   right_info_ = node.subscribe<CameraInfo>(
-      "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(kRightInfo, m, right_info_filter_); },
+      "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(PairSynchronizer::kRightInfo, m); },
       ros::VoidConstPtr(), no_delay);
   seeds_->subscribe();
 }
@@ -254,10 +278,10 @@ void DisparityNodelet::subscribe() {
 void DisparityNodelet::subscribeImages(const ros::TransportHints& ros_hints) {
   const image_transport::TransportHints hints("raw", ros_hints, getPrivateNodeHandle());
   left_image_ = transport_->subscribe(
-      "left/image_rect", 1, [this](const ImageConstPtr& m) { onInput(kLeftImage, m, left_image_filter_); },
+      "left/image_rect", 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kLeftImage, m); },
       ros::VoidPtr(), hints);
   right_image_ = transport_->subscribe(
-      "right/image_rect", 1, [this](const ImageConstPtr& m) { onInput(kRightImage, m, right_image_filter_); },
+      "right/image_rect", 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kRightImage, m); },
       ros::VoidPtr(), hints);
 }
 
@@ -270,61 +294,28 @@ void DisparityNodelet::unsubscribe() {
   worker_->clear();
 }
 
-template <typename Message>
-void DisparityNodelet::onInput(Input input, const boost::shared_ptr<const Message>& message,
-                               message_filters::PassThrough<Message>& to) {
-  const ros::Time stamp = message->header.stamp;
-  bool jumped_back = false;
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    InputStatus& status = status_.inputs[input];
-    jumped_back = status.received > 0 && secondsBetween(stamp, status.stamp) > kJumpBack;
-    ++status.received;
-    status.stamp = stamp;
-    if (jumped_back) {
-      for (InputStatus& other : status_.inputs) other.stamp = std::min(other.stamp, stamp);
-    }
-  }
-  if (jumped_back) {
-    resetSynchronizer();
-    last_taken_ = ros::Time();
-    forget_ = true;
-  }
+template <typename MessagePtr>
+void DisparityNodelet::onInput(PairSynchronizer::Input input, const MessagePtr& message) {
   try {
-    to.add(message);
-  } catch (const std::runtime_error&) {  // ApproximateTime computes with stamps, which may be anything
-    warn(status_.inputs[input].topic + ": stamp " + std::to_string(stamp.toSec()) +
-         " s is too far from the others'; check the clock of the camera");
-    resetSynchronizer();
+    synchronizer_->add(input, message);
+  } catch (const std::bad_alloc&) {  // of the one message: the manager goes on
+    recordFailure(kOutOfMemory);
   }
 }
 
-void DisparityNodelet::resetSynchronizer() {
-  exact_.reset();
-  approximate_.reset();
-  const auto queue_size = static_cast<std::uint32_t>(queue_size_);
-  if (approximate_sync_) {
-    ApproximatePolicy policy(queue_size);
-    if (tolerance_s_ > 0.0) policy.setMaxIntervalDuration(ros::Duration(tolerance_s_));
-    approximate_ = std::make_unique<message_filters::Synchronizer<ApproximatePolicy>>(policy);
-    approximate_->connectInput(left_image_filter_, left_info_filter_, right_image_filter_, right_info_filter_);
-    approximate_->registerCallback(&DisparityNodelet::onPair, this);
-  } else {
-    exact_ = std::make_unique<message_filters::Synchronizer<ExactPolicy>>(ExactPolicy(queue_size));
-    exact_->connectInput(left_image_filter_, left_info_filter_, right_image_filter_, right_info_filter_);
-    exact_->registerCallback(&DisparityNodelet::onPair, this);
-  }
+void DisparityNodelet::onRestart() {
+  last_taken_ = ros::Time();
+  forget_ = true;
 }
 
-void DisparityNodelet::onPair(const ImageConstPtr& left, const CameraInfoConstPtr& left_info,
-                              const ImageConstPtr& right, const CameraInfoConstPtr& right_info) {
-  const bool over_rate = overRate(left->header.stamp);
+void DisparityNodelet::onPair(const StereoFrame& frame) {
+  const bool over_rate = overRate(frame.left->header.stamp);
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
     ++status_.pairs;
     if (over_rate) ++status_.over_rate;
   }
-  if (!over_rate) worker_->submit({left, right, left_info, right_info, Clock::now()});
+  if (!over_rate) worker_->submit(frame);
 }
 
 bool DisparityNodelet::overRate(const ros::Time& stamp) {
@@ -350,7 +341,9 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
     publish(output);
     recordSuccess(frame, output, start, settings->revision);
   } catch (const std::bad_alloc&) {
-    recordFailure("out of memory; lower disparity_range or scale, and max_memory_mb to what this machine has");
+    recordFailure(kOutOfMemory);
+  } catch (const cv::Exception& error) {
+    recordFailure(error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what());
   } catch (const std::exception& error) {
     recordFailure(error.what());
   }
@@ -367,8 +360,8 @@ bool DisparityNodelet::tooOld(const StereoFrame& frame, const NodeSettings& sett
 void DisparityNodelet::publish(const FrameOutput& output) {
   if (output.disparity) disparity_.publish(output.disparity);
   if (output.depth) {
-    depth_.publish(output.depth);
-    depth_info_.publish(output.depth_info);
+    depth_.publish(output.depth, output.depth_info);
+    depth_by_old_name_.publish(output.depth);
   }
   if (output.confidence) confidence_.publish(output.confidence);
   if (output.seeds) seeds_image_.publish(output.seeds);
@@ -379,12 +372,16 @@ void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& outp
                                      unsigned revision) {
   const auto now = Clock::now();
   for (const std::string& warning : output.report.warnings) warn(warning);
+  for (const std::string& note : output.report.notes) {
+    if (isNew(note)) NODELET_INFO("%s", note.c_str());
+  }
   const std::lock_guard<std::mutex> lock(status_mutex_);
   ++status_.processed;
   status_.error_is_current = false;
   status_.processing_ms = milliseconds(now - start);
   status_.latency_ms = milliseconds(now - frame.arrival);
   status_.age_ms = secondsBetween(frame.left->header.stamp, ros::Time::now()) * 1e3;
+  status_.apart_ms = secondsBetween(frame.left->header.stamp, frame.right->header.stamp) * 1e3;
   status_.revision = revision;
   status_.frame = std::move(output.report);
 }
@@ -397,22 +394,25 @@ void DisparityNodelet::recordFailure(const std::string& problem) {
   status_.error_is_current = true;
 }
 
+bool DisparityNodelet::isNew(const std::string& text) {
+  const std::lock_guard<std::mutex> lock(status_mutex_);
+  return throttle_.allow(text, Clock::now());
+}
+
 void DisparityNodelet::warn(const std::string& text) {
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    if (!throttle_.allow(text, Clock::now())) return;
-  }
-  NODELET_WARN("%s", text.c_str());
+  if (isNew(text)) NODELET_WARN("%s", text.c_str());
 }
 
 NodeStatus DisparityNodelet::snapshot() {
   const std::lock_guard<std::mutex> connect_lock(connect_mutex_);
   const std::lock_guard<std::mutex> lock(status_mutex_);
+  const PairSynchronizer::Counts counts = synchronizer_->counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) status_.inputs[i].count = counts[i];
   if (subscribed_) {
-    status_.inputs[kLeftImage].publishers = left_image_.getNumPublishers();
-    status_.inputs[kRightImage].publishers = right_image_.getNumPublishers();
-    status_.inputs[kLeftInfo].publishers = left_info_.getNumPublishers();
-    status_.inputs[kRightInfo].publishers = right_info_.getNumPublishers();
+    status_.inputs[PairSynchronizer::kLeftImage].publishers = left_image_.getNumPublishers();
+    status_.inputs[PairSynchronizer::kRightImage].publishers = right_image_.getNumPublishers();
+    status_.inputs[PairSynchronizer::kLeftInfo].publishers = left_info_.getNumPublishers();
+    status_.inputs[PairSynchronizer::kRightInfo].publishers = right_info_.getNumPublishers();
   }
   status_.dropped = worker_->dropped();
   status_.waiting = worker_->waiting();

@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_processor.hpp"
 
-#include <sstream>
-#include <stdexcept>
+#include <cmath>
 
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/io.hpp"
+#include "search_range.hpp"
+#include "text.hpp"
 
 namespace fdp_stereo {
 namespace {
 
 std::string describe(const cv::Mat& image) {
-  std::ostringstream text;
-  text << image.cols << " x " << image.rows << " px, " << (image.depth() == CV_8U ? 8 : 16) << " bit";
-  return text.str();
+  return text(image.cols, " x ", image.rows, " px, ", image.depth() == CV_8U ? 8 : 16, " bit");
 }
 
 /// For display: the brightest value of 16 bits becomes white.
@@ -29,18 +28,13 @@ cv::Mat toEightBit(const cv::Mat& image) {
   return eight_bit;
 }
 
-/// A range with which no pixel of the image has a match is a mistake, not an empty scene.
-void checkRange(DisparityRange range, int width, std::vector<std::string>& warnings) {
-  std::ostringstream text;
-  text << "min_disparity = " << range.min << ", disparity_range = " << range.count;
-  if (range.min >= width || range.max() <= -width) {
-    throw std::invalid_argument(text.str() + ": no pixel of an image " + std::to_string(width) +
-                                " px wide can have such a disparity; set min_disparity near 0");
-  }
-  if (range.count > width) {
-    warnings.push_back(text.str() + ": wider than the image, " + std::to_string(width) +
-                       " px; a smaller disparity_range gives the same in less time");
-  }
+/// A camera that is not at the origin of its frame.
+void describePlace(const PinholeCamera& left, const StereoFrame& frame, const std::string& topic, FrameReport& report) {
+  if (left.tx == 0.0 && left.ty == 0.0) return;
+  report.notes.push_back(text(topic, ": P[3] = ", left.tx, ", P[7] = ", left.ty, ": the camera is at (",
+                              -left.tx / left.fx, ", ", -left.ty / left.fy, ", 0) m beside the origin of ",
+                              quoteForLog(frame.left->header.frame_id), "; depth and seeds follow that, but points of ",
+                              "depth_image_proc (points2) have the camera as their origin"));
 }
 
 /// What others do with the result needs both.
@@ -88,14 +82,21 @@ sensor_msgs::CameraInfoPtr depthInfo(const StereoFrame& frame) {
 FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
                                     const std::atomic<bool>* cancel) {
   FrameOutput output;
-  const StereoPair pair = decodePair(frame, output.report.warnings);
+  const auto [left, right] = decodePair(frame, output.report.warnings);
   const StereoGeometry geometry =
-      stereoGeometry(*frame.left_info, *frame.right_info, pair.left.size(), topics_, output.report.warnings);
+      stereoGeometry(*frame.left_info, *frame.right_info, left.size(), topics_, output.report.warnings);
   const DisparityRange range = settings.pipeline.search;
-  checkRange(range, pair.left.cols, output.report.warnings);
+  checkRange(range, left.cols, geometry, output.report.warnings);
+  output.report.notes.push_back(visibleDistances(range, left.cols, geometry));
+  const PinholeCamera camera = pinholeCamera(*frame.left_info, left.size());
+  describePlace(camera, frame, topics_.left_info, output.report);
 
-  const Seeds external = externalSeeds(frame, settings, pair.left.size(), geometry, output.report);
-  PipelineResult result = pipelineFor(settings).run(pair.left, pair.right, external, cancel);
+  using Clock = std::chrono::steady_clock;
+  const auto patience =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.node.seeds_wait_s));
+  const Seeds external = externalSeeds(
+      {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
+  PipelineResult result = pipelineFor(settings).run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
   dropUnseen(result.disparity);
 
@@ -109,26 +110,33 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
     output.depth_info = depthInfo(frame);
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);
-  if (wanted.seeds) {
-    const cv::Mat drawn = drawSeeds(toEightBit(pair.left), allSeeds(result), range);
-    output.seeds = toImageMessage(drawn, header);
-  }
+  if (wanted.seeds) output.seeds = toImageMessage(drawSeeds(toEightBit(left), allSeeds(result), range), header);
   if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
-  output.report.times = std::move(result.times);
-  output.report.propagated_share = result.propagated_share;
-  output.report.seeds = result.seeds.size();
-  output.report.rejected_seeds = result.rejected_seeds.size();
-  output.report.quasi_dense_seeds = result.quasi_dense_seeds.size();
-  output.report.row_offset_px = result.row_alignment.offset_rms_px;
-  output.report.valid_share = validShare(result.disparity);
+  fillReport(result, output.report);
   return output;
 }
 
-Seeds FrameProcessor::externalSeeds(const StereoFrame& frame, const NodeSettings& settings, cv::Size size,
-                                    const StereoGeometry& geometry, FrameReport& report) const {
+void FrameProcessor::fillReport(PipelineResult& result, FrameReport& report) {
+  report.seeds = result.seeds.size();
+  report.rejected_seeds = result.rejected_seeds.size();
+  report.quasi_dense_seeds = result.quasi_dense_seeds.size();
+  report.valid_share = validShare(result.disparity);
+  report.pipeline = std::move(result);
+  if (!report.pipeline.feature_note.empty()) report.warnings.push_back(report.pipeline.feature_note);
+  const RowAlignment& rows = report.pipeline.row_alignment;
+  if (rows.warning.empty()) return;
+  // The numbers change a little with every pair; as a new text each they would flood a log.
+  constexpr double kMuchTheSame = 0.5;
+  if (!(std::abs(rows.offset_rms_px - told_rows_.offset_rms_px) < kMuchTheSame * told_rows_.offset_rms_px)) {
+    told_rows_ = rows;
+  }
+  report.warnings.push_back(told_rows_.warning);
+}
+
+Seeds FrameProcessor::externalSeeds(const SeedRequest& request, FrameReport& report) const {
   if (!seeds_) return {};
-  Seeds seeds = seeds_(frame, settings, pinholeCamera(*frame.left_info, size), geometry, report.warnings);
-  if (!seeds.empty() && !settings.pipeline.disparity_propagation.enabled) {
+  Seeds seeds = seeds_(request);
+  if (!seeds.empty() && !request.settings.pipeline.disparity_propagation.enabled) {
     report.warnings.push_back("seeds arrive but disparity_propagation_enabled is false: they have little effect");
   }
   report.external_seeds = seeds.size();
@@ -139,20 +147,20 @@ void FrameProcessor::reset() {
   if (pipeline_) pipeline_->reset();
 }
 
-StereoPair FrameProcessor::decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const {
+std::pair<cv::Mat, cv::Mat> FrameProcessor::decodePair(const StereoFrame& frame,
+                                                       std::vector<std::string>& warnings) const {
   checkHeader(frame.left->header, topics_.left_image, warnings);
-  StereoPair pair;
-  pair.left = decodeImage(*frame.left, topics_.left_image);
-  pair.right = decodeImage(*frame.right, topics_.right_image);
-  if (pair.left.size() != pair.right.size() || pair.left.depth() != pair.right.depth()) {
-    throw std::invalid_argument(topics_.left_image + " has " + describe(pair.left) + " but " + topics_.right_image +
-                                " has " + describe(pair.right) + "; both cameras must run in one mode");
+  cv::Mat left = decodeImage(*frame.left, topics_.left_image);
+  cv::Mat right = decodeImage(*frame.right, topics_.right_image);
+  if (left.size() != right.size() || left.depth() != right.depth()) {
+    fail(topics_.left_image, " has ", describe(left), " but ", topics_.right_image, " has ", describe(right),
+         "; both cameras must run in one mode");
   }
-  if (pair.left.channels() != pair.right.channels()) {
+  if (left.channels() != right.channels()) {
     warnings.push_back(topics_.left_image + " is " + frame.left->encoding + " and " + topics_.right_image + " is " +
                        frame.right->encoding + ": both are used as grey");
   }
-  return pair;
+  return {left, right};
 }
 
 Pipeline& FrameProcessor::pipelineFor(const NodeSettings& settings) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,15 +33,14 @@ struct WantedOutputs {
 
 /// What is told about one pair.
 struct FrameReport {
-  std::vector<std::string> warnings;
-  std::vector<StageTime> times;
+  std::vector<std::string> warnings;  ///< what is odd, and what to do
+  std::vector<std::string> notes;     ///< what is good to know of camera and range
+  PipelineStats pipeline;
   std::size_t external_seeds = 0;  ///< of other sensors, as given to the pipeline
   std::size_t seeds = 0;
   std::size_t rejected_seeds = 0;
   std::size_t quasi_dense_seeds = 0;
-  double propagated_share = 0.0;  ///< of the pixels whose costs the seeds changed
-  double row_offset_px = 0.0;     ///< RMS over the image
-  double valid_share = 0.0;       ///< of the pixels
+  double valid_share = 0.0;  ///< of the pixels
 };
 
 /// Messages of one pair, null where not wanted.
@@ -54,10 +54,18 @@ struct FrameOutput {
   FrameReport report;
 };
 
-/// Seeds of other sensors for one pair; adds to `warnings` what was left out and why.
-using SeedProvider =
-    std::function<Seeds(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                        const StereoGeometry& geometry, std::vector<std::string>& warnings)>;
+/// What a pair asks of other sensors.
+struct SeedRequest {
+  const StereoFrame& frame;
+  const NodeSettings& settings;
+  const PinholeCamera& left;
+  const StereoGeometry& geometry;
+  std::chrono::steady_clock::time_point
+      deadline;                        ///< until when it may be waited for messages, of all sources together
+  const std::atomic<bool>* cancel;     ///< ends the waiting; may be null
+  std::vector<std::string>& warnings;  ///< what was left out and why
+};
+using SeedProvider = std::function<Seeds(const SeedRequest& request)>;
 
 /// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
 class FrameProcessor {
@@ -73,16 +81,17 @@ class FrameProcessor {
   void reset();
 
  private:
-  StereoPair decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
+  std::pair<cv::Mat, cv::Mat> decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
   Pipeline& pipelineFor(const NodeSettings& settings);
 
-  Seeds externalSeeds(const StereoFrame& frame, const NodeSettings& settings, cv::Size size,
-                      const StereoGeometry& geometry, FrameReport& report) const;
+  Seeds externalSeeds(const SeedRequest& request, FrameReport& report) const;
+  void fillReport(PipelineResult& result, FrameReport& report);
 
   StereoTopics topics_;
   SeedProvider seeds_;
   std::unique_ptr<Pipeline> pipeline_;
   unsigned revision_ = 0;
+  RowAlignment told_rows_;  ///< whose warning is told as long as the offset is much the same
 };
 
 }  // namespace fdp_stereo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_worker.hpp"
 
+#include <cstdio>
 #include <utility>
 
 namespace fdp_stereo {
@@ -53,7 +54,11 @@ void FrameWorker::loop() {
     const StereoFrame frame = std::move(*newest_);
     newest_.reset();
     lock.unlock();
-    job_(frame, cancel_);
+    try {
+      job_(frame, cancel_);
+    } catch (...) {  // not even the report of its failure could be made: the frame is lost, the thread is not
+      std::fputs("fdp_stereo: a pair was lost, for lack of memory even its error message\n", stderr);
+    }
     lock.lock();
   }
 }

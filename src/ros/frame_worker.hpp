@@ -29,7 +29,7 @@ struct StereoFrame {
 /// the latency is the processing time plus at most one frame whatever the input rate is.
 class FrameWorker {
  public:
-  /// Runs in the worker's thread; must not throw; should end soon once `cancel` is set.
+  /// Runs in the worker's thread; should not throw, which loses the frame; should end soon once `cancel` is set.
   using Job = std::function<void(const StereoFrame& frame, const std::atomic<bool>& cancel)>;
 
   explicit FrameWorker(Job job);

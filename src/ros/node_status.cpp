@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "stamps.hpp"
@@ -16,7 +17,8 @@ using diagnostic_msgs::DiagnosticStatus;
 std::string counts(const NodeStatus& now, const NodeStatus& before) {
   std::ostringstream text;
   for (std::size_t i = 0; i < now.inputs.size(); ++i) {
-    text << (i == 0 ? "" : ", ") << now.inputs[i].topic << " " << now.inputs[i].received - before.inputs[i].received;
+    text << (i == 0 ? "" : ", ") << now.inputs[i].topic << " "
+         << now.inputs[i].count.received - before.inputs[i].count.received;
   }
   return text.str();
 }
@@ -26,7 +28,7 @@ std::string missingTopics(const NodeStatus& now, const NodeStatus& before) {
   std::string text;
   for (std::size_t i = 0; i < now.inputs.size(); ++i) {
     const InputStatus& input = now.inputs[i];
-    if (input.received != before.inputs[i].received) continue;
+    if (input.count.received != before.inputs[i].count.received) continue;
     text += (text.empty() ? "" : "; ") + input.topic +
             (input.publishers == 0 ? " has no publisher (check the name with rostopic list)"
                                    : " has a publisher that sends nothing (check with rostopic hz)");
@@ -36,13 +38,13 @@ std::string missingTopics(const NodeStatus& now, const NodeStatus& before) {
 
 /// All topics arrive, so their stamps do not meet.
 std::string stampCause(const NodeStatus& status) {
-  const auto earlier = [](const InputStatus& a, const InputStatus& b) { return a.stamp < b.stamp; };
+  const auto earlier = [](const InputStatus& a, const InputStatus& b) { return a.count.stamp < b.count.stamp; };
   const auto first = std::min_element(status.inputs.begin(), status.inputs.end(), earlier);
   const auto last = std::max_element(status.inputs.begin(), status.inputs.end(), earlier);
   std::ostringstream text;
   text.precision(4);
   text << "the newest stamps of " << first->topic << " and " << last->topic << " are apart by "
-       << secondsBetween(first->stamp, last->stamp) * 1e3 << " ms; ";
+       << secondsBetween(first->count.stamp, last->count.stamp) * 1e3 << " ms; ";
   if (status.approximate_sync) {
     text << "raise ~queue_size or ~approximate_sync_tolerance, or synchronise the cameras";
   } else {
@@ -55,6 +57,15 @@ std::string joined(const std::vector<std::string>& lines) {
   std::string text;
   for (const auto& line : lines) text += (text.empty() ? "" : "; ") + line;
   return text;
+}
+
+/// Of stamps from another clock, as in a recording that is played without --clock, no age is known.
+std::string age(double age_ms) {
+  constexpr double kHour = 3.6e6;
+  if (std::abs(age_ms) > kHour) return "unknown: the stamps are of another clock (a bag played without --clock?)";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << age_ms;
+  return text.str();
 }
 
 double rate(std::uint64_t now, std::uint64_t before, double seconds) {
@@ -99,8 +110,8 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   summarize(now, diagnostics);
   for (std::size_t i = 0; i < now.inputs.size(); ++i) {
     const InputStatus& input = now.inputs[i];
-    diagnostics.addf(input.topic, "%llu received, %.1f Hz", static_cast<unsigned long long>(input.received),
-                     rate(input.received, before.inputs[i].received, seconds));
+    diagnostics.addf(input.topic, "%llu received, %.1f Hz", static_cast<unsigned long long>(input.count.received),
+                     rate(input.count.received, before.inputs[i].count.received, seconds));
   }
   diagnostics.add("Pairs synchronised", now.pairs);
   diagnostics.add("Pairs processed", now.processed);
@@ -112,16 +123,22 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.add("Pairs waiting", now.waiting);
   diagnostics.addf("Processing (ms)", "%.1f", now.processing_ms);
   diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
-  diagnostics.addf("Age of the output (ms)", "%.1f", now.age_ms);
-  for (const StageTime& time : now.frame.times) diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
+  diagnostics.add("Age of the output (ms)", age(now.age_ms));
+  diagnostics.addf("Stamps of left and right apart (ms)", "%.1f", now.apart_ms);
+  for (const StageTime& time : now.frame.pipeline.times)
+    diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
   diagnostics.add("Seeds of other sensors", now.frame.external_seeds);
   diagnostics.add("Seeds", now.frame.seeds);
   diagnostics.add("Seeds rejected", now.frame.rejected_seeds);
   diagnostics.add("Seeds of the first matching", now.frame.quasi_dense_seeds);
-  diagnostics.addf("Pixels influenced by seeds (%)", "%.1f", 100.0 * now.frame.propagated_share);
-  diagnostics.addf("Row offset (px)", "%.2f", now.frame.row_offset_px);
+  diagnostics.addf("Pixels influenced by seeds (%)", "%.1f", 100.0 * now.frame.pipeline.propagated_share);
+  const RowAlignment& rows = now.frame.pipeline.row_alignment;
+  diagnostics.addf("Row offset (px)", "%.2f", rows.offset_rms_px);
+  diagnostics.add("Row alignment", rows.note);
+  diagnostics.addf("Row residuals before and after (px)", "%.2f, %.2f", rows.rms_before_px, rows.rms_after_px);
   diagnostics.addf("Valid pixels (%)", "%.1f", 100.0 * now.frame.valid_share);
   diagnostics.add("Parameter revision", now.revision);
+  diagnostics.add("Notes", joined(now.frame.notes));
   diagnostics.add("Warnings", joined(now.frame.warnings));
   diagnostics.add("Last error", now.last_error);
 }
@@ -129,8 +146,12 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
 bool LogThrottle::allow(const std::string& text, Clock::time_point now) {
   const auto old = [&](const Line& line) { return now - line.time >= period_; };
   recent_.erase(std::remove_if(recent_.begin(), recent_.end(), old), recent_.end());
-  const auto same = [&](const Line& line) { return line.text == text; };
-  if (recent_.size() >= max_lines_ || std::any_of(recent_.begin(), recent_.end(), same)) return false;
+  const auto same = std::find_if(recent_.begin(), recent_.end(), [&](const Line& line) { return line.text == text; });
+  if (same != recent_.end()) {
+    same->time = now;
+    return false;
+  }
+  if (recent_.size() >= max_lines_) return false;
   recent_.push_back({text, now});
   return true;
 }

@@ -9,18 +9,17 @@
 #include <vector>
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
-#include <ros/time.h>
 
 #include "frame_processor.hpp"
+#include "pair_synchronizer.hpp"
 
 /// What the node knows about itself, and how it is told to people. Plain values: the caller locks.
 namespace fdp_stereo {
 
 struct InputStatus {
   std::string topic;  ///< resolved
-  std::uint64_t received = 0;
   std::uint32_t publishers = 0;
-  ros::Time stamp;  ///< of the newest message
+  InputCount count;
 };
 
 /// Counters since the start.
@@ -38,6 +37,7 @@ struct NodeStatus {
   double processing_ms = 0.0;  ///< of the last pair
   double latency_ms = 0.0;     ///< from the arrival of the last pair to its publication
   double age_ms = 0.0;         ///< from its stamp to its publication
+  double apart_ms = 0.0;       ///< from the stamp of its left image to that of its right one
   unsigned revision = 0;       ///< of the parameters it was processed with
   std::string last_error;
   bool error_is_current = false;  ///< the newest pair failed
@@ -53,7 +53,8 @@ std::string describeSilence(const NodeStatus& now, const NodeStatus& before, dou
 void describeStatus(const NodeStatus& now, const NodeStatus& before, double seconds,
                     diagnostic_updater::DiagnosticStatusWrapper& diagnostics);
 
-/// Lets a text through when it is new or was not said for a while, and never more than a few lines in that time.
+/// Lets a text through when it is new: what keeps coming is said once, and again after it has stayed away for a while.
+/// Never more than a few texts at a time.
 class LogThrottle {
  public:
   using Clock = std::chrono::steady_clock;

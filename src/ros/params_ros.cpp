@@ -250,18 +250,16 @@ std::string parameterLines(const ParamRef& ref) {
   return "group.add(" + name + ", " + (isWhole(ref) ? "int_t" : "double_t") + ", 0, " + text + ", " + numbers + ")\n";
 }
 
-void addSeedSource(std::vector<ParamRef>& refs, const std::string& source, SeedSourceParams& p) {
-  refs.push_back({"seeds." + source + "_trust", &p.trust, 0.0, 1.0, "",
+void addSeedSource(std::vector<ParamRef>& refs, const std::string& source, double& trust) {
+  refs.push_back({"seeds." + source + "_trust", &trust, 0.0, 1.0, "",
                   "Share of the seeds from seeds/" + source + " that are right; 0 leaves the source out.",
                   "seeds_" + source + "_trust"});
-  refs.push_back({"seeds." + source + "_noise_px", &p.noise_px, 0.01, 16.0, "px",
-                  "Standard deviation of the disparities from seeds/" + source + ".", "seeds_" + source + "_noise"});
 }
 
 void addSeeds(std::vector<ParamRef>& refs, NodeParams& n) {
-  addSeedSource(refs, "points", n.seeds_points);
-  addSeedSource(refs, "depth", n.seeds_depth);
-  addSeedSource(refs, "disparity", n.seeds_disparity);
+  addSeedSource(refs, "points", n.seeds_points_trust);
+  addSeedSource(refs, "depth", n.seeds_depth_trust);
+  addSeedSource(refs, "disparity", n.seeds_disparity_trust);
   refs.push_back({"seeds.spacing_px", &n.seeds_spacing_px, 1.0, 100.0, "px",
                   "One seed of a source per square of this side; larger is cheaper.", "seeds_spacing"});
   refs.push_back({"seeds.max_age_s", &n.seeds_max_age_s, 0.0, 10.0, "s",

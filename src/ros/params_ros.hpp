@@ -13,25 +13,19 @@
 /// dynamic_reconfigure and the parameter server to and from the one list of parameters; no node needed.
 namespace fdp_stereo {
 
-/// How far the seeds of another sensor are believed.
-struct SeedSourceParams {
-  double trust;     ///< 0..1, share of them that are right; 0 = the source is not used
-  double noise_px;  ///< standard deviation of their disparities
-};
-
 /// What only the node needs, beside the pipeline's parameters.
 struct NodeParams {
   double max_rate_hz = 0.0;  ///< pairs per second by their stamps; 0 = every pair
   double max_age_s = 0.0;    ///< an older pair is dropped; 0 = off, as bags need it
   int nice = 0;              ///< of the working threads, 0..19
   double min_depth_m = 0.0;
-  double max_depth_m = 0.0;  ///< 0 = none
-  SeedSourceParams seeds_points{0.95, 0.5};
-  SeedSourceParams seeds_depth{0.9, 1.0};
-  SeedSourceParams seeds_disparity{0.9, 1.0};
-  double seeds_spacing_px = 4.0;  ///< one seed per square of this side
-  double seeds_max_age_s = 0.1;   ///< farther from the image in time, a seed message is not used
-  double seeds_wait_s = 0.0;      ///< a pair waits at most this long for seeds of its time
+  double max_depth_m = 0.0;            ///< 0 = none
+  double seeds_points_trust = 0.95;    ///< 0..1, share of the seeds of this source that are right; 0 = it is not used
+  double seeds_depth_trust = 0.9;      ///< likewise
+  double seeds_disparity_trust = 0.9;  ///< likewise
+  double seeds_spacing_px = 4.0;       ///< one seed per square of this side
+  double seeds_max_age_s = 0.1;        ///< farther from the image in time, a seed message is not used
+  double seeds_wait_s = 0.0;           ///< a pair waits at most this long for seeds of its time
 };
 
 /// One consistent set: a frame is processed with one of them, whole.

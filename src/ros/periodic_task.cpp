@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "periodic_task.hpp"
 
+#include <cstdio>
+#include <exception>
 #include <utility>
 
 namespace fdp_stereo {
@@ -11,7 +13,11 @@ PeriodicTask::PeriodicTask(std::chrono::duration<double> period, std::function<v
         std::unique_lock<std::mutex> lock(mutex_);
         while (!ended_.wait_for(lock, period, [this] { return end_; })) {
           lock.unlock();
-          task();
+          try {
+            task();
+          } catch (const std::exception& error) {  // of this round only: the next one may have the memory again
+            std::fprintf(stderr, "fdp_stereo: a report was lost: %s\n", error.what());
+          }
           lock.lock();
         }
       }) {}

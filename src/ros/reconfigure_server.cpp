@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -48,6 +49,14 @@ dynamic_reconfigure::Config storedConfig(const XmlRpc::XmlRpcValue& const_values
   return config;
 }
 
+/// Where a file with a relative name was looked for: roslaunch starts nodes in a folder of its own.
+std::string lookedIn(const std::string& preset) {
+  const std::filesystem::path path(preset);
+  if (path.is_absolute() || path.extension().empty()) return "";
+  std::error_code ignored;
+  return " (looked in " + std::filesystem::current_path(ignored).string() + "; give the whole path)";
+}
+
 /// A nodelet that is unloaded while one of its callbacks runs ends in the thread of that callback, later than the
 /// answer to the unloading; one that is loaded again at once must wait for the name of its service.
 void waitForPredecessor(const std::string& service) {
@@ -82,14 +91,16 @@ NodeSettings ReconfigureServer::loadInitial(const std::vector<std::string>& othe
   try {
     settings.pipeline = loadPreset(preset);
   } catch (const std::exception& error) {
-    report_("~preset: " + std::string(error.what()) + "; using " + kDefaultPreset);
+    report_("~preset: " + std::string(error.what()) + lookedIn(preset) + "; using " + kDefaultPreset);
     settings.pipeline = loadPreset(kDefaultPreset);
   }
   XmlRpc::XmlRpcValue values;
   if (!node_.getParam("", values)) return settings;
   written_ = storedConfig(values);
   std::vector<std::string> messages;
-  settings = applyRosparam(values, settings, others, messages);
+  std::vector<std::string> known = others;
+  known.emplace_back("preset");
+  settings = applyRosparam(values, settings, known, messages);
   for (const std::string& message : messages) report_(message);
   settings.revision = 0;
   return settings;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -53,26 +54,19 @@ float readFloat(const std::uint8_t* from) {
   return value;
 }
 
-/// P where it is set, else K.
+/// The camera of a depth image, whose camera_info may be that of the full resolution.
 PinholeCamera depthCamera(const sensor_msgs::CameraInfo& info, cv::Size size, const std::string& topic) {
-  PinholeCamera camera{info.P[0], info.P[5], info.P[2], info.P[6], size};
-  if (camera.fx == 0.0) camera = {info.K[0], info.K[4], info.K[2], info.K[5], size};
-  const bool finite =
-      std::isfinite(camera.cx) && std::isfinite(camera.cy) && std::isfinite(camera.fx) && std::isfinite(camera.fy);
+  const DescribedSize described = describedSize(info);
+  PinholeCamera camera = pinholeCamera(info, size);
+  const double values[] = {camera.fx, camera.fy, camera.cx, camera.cy, camera.tx, camera.ty};
+  const bool finite = std::all_of(std::begin(values), std::end(values), [](double v) { return std::isfinite(v); });
   if (!finite || camera.fx <= 0.0 || camera.fy <= 0.0) {
     throw std::invalid_argument(topic + ": fx = " + std::to_string(camera.fx) + ", fy = " + std::to_string(camera.fy) +
                                 " in its camera_info; calibrate the depth camera");
   }
-  if (info.width != 0 && info.width != static_cast<std::uint32_t>(size.width)) {
-    const double scale = static_cast<double>(size.width) / info.width;  // the info of the full resolution
-    camera = {camera.fx * scale, camera.fy * scale, (camera.cx + 0.5) * scale - 0.5, (camera.cy + 0.5) * scale - 0.5,
-              size};
-  }
-  return camera;
-}
-
-Eigen::Vector3d backProject(const PinholeCamera& camera, int x, int y, double z) {
-  return {(x - camera.cx) * z / camera.fx, (y - camera.cy) * z / camera.fy, z};
+  if (described.width == 0) return camera;
+  const double scale = static_cast<double>(size.width) / described.width;
+  return scale == 1.0 ? camera : camera.scaled(scale, scale);
 }
 
 /// The nearest depth per square of the image.
@@ -110,13 +104,6 @@ class DepthGrid {
 
 }  // namespace
 
-PinholeCamera pinholeCamera(const sensor_msgs::CameraInfo& info, cv::Size image_size) {
-  const double bx = std::max(1U, info.binning_x);
-  const double by = std::max(1U, info.binning_y);
-  return {info.P[0] / bx, info.P[5] / by, (info.P[2] - info.roi.x_offset) / bx, (info.P[6] - info.roi.y_offset) / by,
-          image_size};
-}
-
 Points pointsOfCloud(const sensor_msgs::PointCloud2& cloud, const std::string& topic) {
   const std::uint32_t x = fieldOffset(cloud, "x", topic);
   const std::uint32_t y = fieldOffset(cloud, "y", topic);
@@ -148,7 +135,7 @@ Points pointsOfDepth(const sensor_msgs::Image& depth, const sensor_msgs::CameraI
   for (int y = 0; y < metres.rows; y += stride) {
     for (int x = 0; x < metres.cols; x += stride) {
       const float z = metres.at<float>(y, x);
-      if (std::isfinite(z) && z > 0.0F) points.push_back(backProject(camera, x, y, z));
+      if (std::isfinite(z) && z > 0.0F) points.push_back(camera.backProject(x, y, z));
     }
   }
   return points;
@@ -162,15 +149,13 @@ Points pointsOfDisparity(const stereo_msgs::DisparityImage& disparity, const Pin
                                 ", T = " + std::to_string(disparity.T) + " give no depth; both must be > 0");
   }
   const cv::Mat map = fromDisparityMessage(disparity, {}, topic);
-  const double sx = static_cast<double>(map.cols) / left.size.width;
-  const double sy = static_cast<double>(map.rows) / left.size.height;
-  const PinholeCamera camera{left.fx * sx, left.fy * sy, (left.cx + 0.5) * sx - 0.5, (left.cy + 0.5) * sy - 0.5,
-                             map.size()};
+  const PinholeCamera camera =
+      left.scaled(static_cast<double>(map.cols) / left.size.width, static_cast<double>(map.rows) / left.size.height);
   Points points;
   for (int y = 0; y < map.rows; y += stride) {
     for (int x = 0; x < map.cols; x += stride) {
       const float d = map.at<float>(y, x);
-      if (d > 0.0F) points.push_back(backProject(camera, x, y, scale / d));
+      if (d > 0.0F) points.push_back(camera.backProject(x, y, scale / d));
     }
   }
   return points;
@@ -185,8 +170,9 @@ Seeds projectSeeds(const Points& points, const PinholeCamera& left, const Stereo
   DepthGrid grid(left.size, quality.spacing_px);
   for (const Eigen::Vector3d& p : points) {
     if (!(p.z() > 0.0)) continue;
-    const double u = left.fx * p.x() / p.z() + left.cx;
-    const double v = left.fy * p.y() / p.z() + left.cy;
+    const Eigen::Vector2d pixel = left.project(p);
+    const double u = pixel.x();
+    const double v = pixel.y();
     if (!(u >= 0.0 && v >= 0.0 && u <= left.size.width - 1 && v <= left.size.height - 1)) continue;
     inside.push_back({u, v, p.z()});
     grid.add(u, v, p.z());
@@ -196,7 +182,7 @@ Seeds projectSeeds(const Points& points, const PinholeCamera& left, const Stereo
     if (!grid.visible(p.u, p.v, p.z)) continue;
     const double d = geometry.focal_px * geometry.baseline_m / p.z + geometry.cx_offset_px;
     seeds.push_back({static_cast<float>(p.u), static_cast<float>(p.v), static_cast<float>(d),
-                     static_cast<float>(quality.trust), static_cast<float>(quality.noise_px), source});
+                     static_cast<float>(quality.trust), source});
   }
   return seeds;
 }

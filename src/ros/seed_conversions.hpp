@@ -16,21 +16,8 @@ namespace fdp_stereo {
 /// How a source is believed, and how densely it is taken.
 struct SeedQuality {
   double trust = 0.95;      ///< 0..1, share of its seeds that are right
-  double noise_px = 0.5;    ///< standard deviation of its disparities
   double spacing_px = 4.0;  ///< at most one seed per square of this side, the nearest point
 };
-
-/// Pinhole camera of an image as published.
-struct PinholeCamera {
-  double fx = 0.0;
-  double fy = 0.0;
-  double cx = 0.0;
-  double cy = 0.0;
-  cv::Size size;
-};
-
-/// The left camera of a checked pair, binning and region of interest applied.
-PinholeCamera pinholeCamera(const sensor_msgs::CameraInfo& info, cv::Size image_size);
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -38,7 +25,7 @@ using Points = std::vector<Eigen::Vector3d>;
 /// its data, or without float x, y, z.
 Points pointsOfCloud(const sensor_msgs::PointCloud2& cloud, const std::string& topic);
 
-/// Points of a depth image (16UC1 in mm or 32FC1 in m, 0 or NaN = none) in its camera's optical frame, every
+/// Points of a depth image (16UC1 in mm or 32FC1 in m, 0 or NaN = none) in the frame of its camera, every
 /// `stride`-th pixel both ways. Throws std::invalid_argument naming `topic`.
 Points pointsOfDepth(const sensor_msgs::Image& depth, const sensor_msgs::CameraInfo& info, int stride,
                      const std::string& topic);
@@ -48,9 +35,9 @@ Points pointsOfDepth(const sensor_msgs::Image& depth, const sensor_msgs::CameraI
 Points pointsOfDisparity(const stereo_msgs::DisparityImage& disparity, const PinholeCamera& left, int stride,
                          const std::string& topic);
 
-/// Points in the left optical frame to seeds (disparities of the pixels as given, not published ones). Of the points in
-/// a square of spacing_px only the nearest counts, and a point clearly behind one in a square beside it is taken as
-/// hidden.
+/// Points in the frame of the left camera to seeds (disparities of the pixels as given, not published ones). Of the
+/// points in a square of spacing_px only the nearest counts, and a point clearly behind one in a square beside it is
+/// taken as hidden.
 Seeds projectSeeds(const Points& points, const PinholeCamera& left, const StereoGeometry& geometry,
                    const SeedQuality& quality, SeedSource source);
 

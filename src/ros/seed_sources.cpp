@@ -29,9 +29,9 @@ int strideFor(double spacing_px, std::uint32_t width, int left_width) {
 
 }  // namespace
 
-SeedSources::SeedSources(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+SeedSources::SeedSources(const ros::NodeHandle& node, StartParams& params)
     : node_(node),
-      fixed_frame_(private_node.param<std::string>("seeds_fixed_frame", "")),
+      fixed_frame_(params.param<std::string>("seeds_fixed_frame", "")),
       points_topic_(node_.resolveName("seeds/points")),
       depth_topic_(node_.resolveName("seeds/depth")),
       disparity_topic_(node_.resolveName("seeds/disparity")),
@@ -67,44 +67,47 @@ void SeedSources::unsubscribe() {
   disparity_buffer_.clear();
 }
 
-Seeds SeedSources::collect(const StereoFrame& frame, const NodeSettings& settings, const PinholeCamera& left,
-                           const StereoGeometry& geometry, std::vector<std::string>& warnings) {
-  const NodeParams& params = settings.node;
-  Request request{frame, params, left, geometry, warnings, {}};
-  const std_msgs::Header& header = frame.left->header;
-  const double spacing = params.seeds_spacing_px;
-  addSource(request, point_buffer_, points_topic_, params.seeds_points, SeedSource::kPoints,
-            [&](const sensor_msgs::PointCloud2& cloud) {
-              return toLeft(pointsOfCloud(cloud, points_topic_), cloud.header, header);
-            });
-  addSource(request, depth_buffer_, depth_topic_, params.seeds_depth, SeedSource::kDepth, [&](const Depth& depth) {
-    const int stride = strideFor(spacing, depth.image->width, left.size.width);
-    return toLeft(pointsOfDepth(*depth.image, *depth.info, stride, depth_topic_), depth.image->header, header);
-  });
-  addSource(request, disparity_buffer_, disparity_topic_, params.seeds_disparity, SeedSource::kDisparity,
-            [&](const stereo_msgs::DisparityImage& disparity) {
-              const int stride = strideFor(spacing, disparity.image.width, left.size.width);
-              return pointsOfDisparity(disparity, left, stride, disparity_topic_);
-            });
-  return request.seeds;
+Seeds SeedSources::collect(const SeedRequest& request) {
+  const NodeParams& params = request.settings.node;
+  const std_msgs::Header& header = request.frame.left->header;
+  const int left_width = request.left.size.width;
+  Seeds seeds = seedsOf(request, point_buffer_, points_topic_, params.seeds_points_trust, SeedSource::kPoints,
+                        [&](const sensor_msgs::PointCloud2& cloud) {
+                          return toLeft(pointsOfCloud(cloud, points_topic_), cloud.header, header);
+                        });
+  const Seeds of_depth = seedsOf(
+      request, depth_buffer_, depth_topic_, params.seeds_depth_trust, SeedSource::kDepth, [&](const Depth& depth) {
+        const int stride = strideFor(params.seeds_spacing_px, depth.image->width, left_width);
+        return toLeft(pointsOfDepth(*depth.image, *depth.info, stride, depth_topic_), depth.image->header, header);
+      });
+  const Seeds of_disparity = seedsOf(request, disparity_buffer_, disparity_topic_, params.seeds_disparity_trust,
+                                     SeedSource::kDisparity, [&](const stereo_msgs::DisparityImage& disparity) {
+                                       const int stride =
+                                           strideFor(params.seeds_spacing_px, disparity.image.width, left_width);
+                                       return pointsOfDisparity(disparity, request.left, stride, disparity_topic_);
+                                     });
+  seeds.insert(seeds.end(), of_depth.begin(), of_depth.end());
+  seeds.insert(seeds.end(), of_disparity.begin(), of_disparity.end());
+  return seeds;
 }
 
 template <typename Message, typename ToPoints>
-void SeedSources::addSource(Request& request, StampedBuffer<Message>& buffer, const std::string& topic,
-                            const SeedSourceParams& params, SeedSource source, const ToPoints& to_points) {
-  if (params.trust <= 0.0 || !buffer.heard()) return;
-  const NodeParams& node = request.params;
-  const auto message = buffer.nearest(request.frame.left->header.stamp, node.seeds_max_age_s, node.seeds_wait_s);
+Seeds SeedSources::seedsOf(const SeedRequest& request, StampedBuffer<Message>& buffer, const std::string& topic,
+                           double trust, SeedSource source, const ToPoints& to_points) {
+  if (trust <= 0.0 || !buffer.heard()) return {};
+  const NodeParams& params = request.settings.node;
+  const auto message =
+      buffer.nearest(request.frame.left->header.stamp, params.seeds_max_age_s, request.deadline, request.cancel);
   if (!message) {
     request.warnings.push_back(
         topic + ": nothing within seeds_max_age of the image; it stopped, is late, or its clock differs");
-    return;
+    return {};
   }
   try {
-    const SeedQuality quality{params.trust, params.noise_px, node.seeds_spacing_px};
-    const Seeds seeds = projectSeeds(to_points(*message), request.left, request.geometry, quality, source);
+    const SeedQuality quality{trust, params.seeds_spacing_px};
+    Seeds seeds = projectSeeds(to_points(*message), request.left, request.geometry, quality, source);
     if (seeds.empty()) request.warnings.push_back(topic + ": none of its points is seen by the left camera");
-    request.seeds.insert(request.seeds.end(), seeds.begin(), seeds.end());
+    return seeds;
   } catch (const std::invalid_argument& error) {
     request.warnings.push_back(error.what());
   } catch (const tf2::TransformException& error) {
@@ -112,6 +115,7 @@ void SeedSources::addSource(Request& request, StampedBuffer<Message>& buffer, co
   } catch (const std::exception& error) {  // none of this may cost the disparity
     request.warnings.push_back(topic + ": not used: " + error.what());
   }
+  return {};
 }
 
 Points SeedSources::toLeft(Points points, const std_msgs::Header& from, const std_msgs::Header& left) const {

@@ -160,7 +160,7 @@ TEST_P(EveryPreset, HalfScaleGivesFullSizeAndFullDisparities) {
   PipelineParams params = paramsOf(GetParam());
   params.hole_filling.enabled = true;
   params.scale = 0.5;
-  Seeds external = {{100.0F, 10.0F, 6.0F, 1.0F, 0.2F, SeedSource::kPoints}};
+  Seeds external = {{100.0F, 10.0F, 6.0F, 1.0F, SeedSource::kPoints}};
   const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right, external);
   ASSERT_EQ(result.disparity.size(), rendered().left.size());
   ASSERT_EQ(result.confidence.size(), rendered().left.size());
@@ -175,9 +175,9 @@ TEST_P(EveryPreset, HalfScaleGivesFullSizeAndFullDisparities) {
 }
 
 TEST(Pipeline, ExternalSeedsBecomeSeeds) {
-  const Seeds external = {{100.0F, 60.0F, 15.0F, 1.0F, 0.5F, SeedSource::kFile},
-                          {20.0F, 20.0F, 500.0F, 1.0F, 0.5F, SeedSource::kFile},
-                          {-5.0F, 20.0F, 6.0F, 1.0F, 0.5F, SeedSource::kFile}};
+  const Seeds external = {{100.0F, 60.0F, 15.0F, 1.0F, SeedSource::kFile},
+                          {20.0F, 20.0F, 500.0F, 1.0F, SeedSource::kFile},
+                          {-5.0F, 20.0F, 6.0F, 1.0F, SeedSource::kFile}};
   const PipelineResult result = Pipeline(paramsOf("paper")).run(rendered().left, rendered().right, external);
   int found = 0;
   for (const Seed& seed : result.seeds) {

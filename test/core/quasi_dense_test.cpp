@@ -154,7 +154,7 @@ TEST(QuasiDense, LocalExpansionSpreadsSeedsInItsOwnVolumes) {
   Seeds seeds;
   for (int y = 4; y < 48; y += 8) {
     for (int x = 12; x < 80; x += 8) {
-      seeds.push_back({static_cast<float>(x), static_cast<float>(y), 6.5F, 1.0F, 0.3F, SeedSource::kPoints});
+      seeds.push_back({static_cast<float>(x), static_cast<float>(y), 6.5F, 1.0F, SeedSource::kPoints});
     }
   }
   const cv::Rect seen(14, 4, 62, 40);

@@ -50,12 +50,11 @@ TEST(Scaling, RangeCoversTheFullOne) {
 
 TEST(Scaling, SeedsMatchesAndRowsComeBack) {
   const Scaling scaling(cv::Size(100, 80), 0.5);
-  const Seeds small = scaling.shrink(Seeds{{10.0F, 21.0F, 8.0F, 0.9F, 0.5F, SeedSource::kPoints}});
+  const Seeds small = scaling.shrink(Seeds{{10.0F, 21.0F, 8.0F, 0.9F, SeedSource::kPoints}});
   // Full pixels 10 and 11 make up small pixel 5, whose centre lies at 10.5.
   EXPECT_FLOAT_EQ(small[0].x, 4.75F);
   EXPECT_FLOAT_EQ(small[0].y, 10.25F);
   EXPECT_FLOAT_EQ(small[0].d, 4.0F);
-  EXPECT_FLOAT_EQ(small[0].sigma_px, 0.25F);
   const Seeds full = scaling.grow(small);
   EXPECT_FLOAT_EQ(full[0].x, 10.0F);
   EXPECT_FLOAT_EQ(full[0].d, 8.0F);

@@ -50,7 +50,7 @@ class CommandsTest(unittest.TestCase):
         for source in ("disparity_nodelet.cpp", "seed_sources.cpp", "params_ros.cpp"):
             with open(os.path.join(ROOT, "src", "ros", source)) as file:
                 text = file.read()
-            names.update(re.findall(r'(?:advertise|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
+            names.update(re.findall(r'(?:advertise(?:Camera)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
             names.update(re.findall(r'(?:param(?:<[^>]+>)?|period)\("(\w+)"', text))
             if source == "params_ros.cpp":
                 names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)"}\)?[;,]', text, flags=re.S))

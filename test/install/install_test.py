@@ -100,8 +100,9 @@ class InstallTest(unittest.TestCase):
 
     def test_the_demo_runs(self):
         port = free_port()
-        self.in_ros("export ROS_MASTER_URI=http://localhost:%d; timeout 200 roslaunch -p %d fdp_stereo demo.launch "
-                    "output:=$PWD/out || true" % (port, port))
+        said = self.in_ros("export ROS_MASTER_URI=http://localhost:%d; timeout 200 roslaunch -p %d fdp_stereo "
+                           "demo.launch output:=$PWD/out" % (port, port))
+        self.assertNotIn("has died", said)
         with open(self.path("out/summary.txt")) as summary:
             self.assertRegex(summary.read(), r"disparity images out: +[1-9]")
         self.assertTrue(os.path.exists(self.path("out/output.bag")))

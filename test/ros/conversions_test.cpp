@@ -13,7 +13,6 @@
 namespace fdp_stereo {
 namespace {
 
-using test::cameraInfo;
 using test::imageMessage;
 
 constexpr char kTopic[] = "/cam/left/image_rect";
@@ -174,117 +173,6 @@ TEST(DecodeImage, RefusesWhatIsNoImage) {
   expectContains(error(), {kTopic, "4294967295"});
   message = imageMessage(noise(CV_8UC2, 4, 5), "yuv422");
   expectContains(error(), {kTopic, "width 5", "even"});
-}
-
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
-
-struct Calibration {
-  sensor_msgs::CameraInfo left = cameraInfo(kWidth, kHeight, 500.0, 330.0, 240.0, 0.0);
-  sensor_msgs::CameraInfo right = cameraInfo(kWidth, kHeight, 500.0, 330.0, 240.0, -60.0);
-  cv::Size size{kWidth, kHeight};
-  std::vector<std::string> warnings;
-  StereoGeometry geometry() { return stereoGeometry(left, right, size, {}, warnings); }
-  std::string error() {
-    return errorOf([&] { geometry(); });
-  }
-};
-
-TEST(StereoGeometry, ParallelCameras) {
-  Calibration c;
-  const auto geometry = c.geometry();
-  EXPECT_DOUBLE_EQ(geometry.focal_px, 500.0);
-  EXPECT_DOUBLE_EQ(geometry.baseline_m, 0.12);
-  EXPECT_DOUBLE_EQ(geometry.cx_offset_px, 0.0);
-  EXPECT_TRUE(c.warnings.empty());
-}
-
-/// Rectified images have P; what describes the raw ones may be anything.
-TEST(StereoGeometry, LooksOnlyAtP) {
-  Calibration c;
-  for (auto* info : {&c.left, &c.right}) {
-    info->D.assign(3, NAN);
-    info->K.fill(0.0);
-    info->R.fill(NAN);
-    info->distortion_model = "unknown";
-  }
-  EXPECT_DOUBLE_EQ(c.geometry().focal_px, 500.0);
-  EXPECT_TRUE(c.warnings.empty());
-}
-
-TEST(QuoteForLog, ShortAndPrintable) {
-  EXPECT_EQ(quoteForLog("mono8"), "'mono8'");
-  EXPECT_EQ(quoteForLog(std::string("a\0\n\x1b\xff", 5) + "b"), "'a????b'");
-  EXPECT_EQ(quoteForLog(std::string(100000, 'x')), "'" + std::string(40, 'x') + "'");
-}
-
-TEST(StereoGeometry, VergedCameras) {
-  Calibration c;
-  c.right.P[2] = 350.0;
-  EXPECT_DOUBLE_EQ(c.geometry().cx_offset_px, -20.0);
-  EXPECT_DOUBLE_EQ(c.geometry().published(5.0), 25.0);
-}
-
-TEST(StereoGeometry, BinningAndRegionOfInterest) {
-  Calibration c;
-  for (auto* info : {&c.left, &c.right}) {
-    info->binning_x = info->binning_y = 2;
-    info->roi.x_offset = 20;
-    info->roi.y_offset = 40;
-    info->roi.width = 400;
-    info->roi.height = 300;
-  }
-  c.right.roi.x_offset = 30;  // the right window starts 10 px further
-  c.size = {200, 150};
-  const auto geometry = c.geometry();
-  EXPECT_DOUBLE_EQ(geometry.focal_px, 250.0);
-  EXPECT_DOUBLE_EQ(geometry.baseline_m, 0.12);
-  EXPECT_DOUBLE_EQ(geometry.cx_offset_px, 5.0);
-}
-
-TEST(StereoGeometry, UsableButOdd) {
-  const std::vector<std::pair<std::function<void(Calibration&)>, std::string>> cases = {
-      {[](Calibration& c) { c.right.header.frame_id = "right_optical"; }, "right_optical"},
-      {[](Calibration& c) { c.left.P[0] = 502.0; }, "fx = 502"},
-      {[](Calibration& c) { c.left.P[6] = 240.5; }, "cy = 240.5"},
-      {[](Calibration& c) { c.left.width = c.left.height = 0; }, "size is not set"},
-  };
-  for (const auto& [change, expected] : cases) {
-    Calibration c;
-    change(c);
-    const auto geometry = c.geometry();
-    EXPECT_DOUBLE_EQ(geometry.focal_px, 500.0) << expected;
-    ASSERT_EQ(c.warnings.size(), 1U) << expected;
-    expectContains(c.warnings[0], {"camera_info", expected});
-  }
-}
-
-TEST(StereoGeometry, RefusesWhatGivesNoDepth) {
-  const std::vector<std::pair<std::function<void(Calibration&)>, std::vector<std::string>>> cases = {
-      {[](Calibration& c) { c.left.P[0] = NAN; }, {"left/camera_info", "P[0] = nan", "calibrate"}},
-      {[](Calibration& c) { c.right.P[3] = -INFINITY; }, {"right/camera_info", "P[3] = -inf"}},
-      {[](Calibration& c) { c.right.P.fill(0.0); }, {"right/camera_info", "all 0", "camera_calibration"}},
-      {[](Calibration& c) { c.left.P[5] = -500.0; }, {"left/camera_info", "P[5] = -500"}},
-      {[](Calibration& c) { c.right.P[3] = 0.0; }, {"right/camera_info", "P[3] = 0", "baseline"}},
-      {[](Calibration& c) { c.right.P[3] = 60.0; }, {"right/camera_info", "P[3] = 60", "swapped"}},
-      {[](Calibration& c) { std::swap(c.left, c.right); }, {"left/camera_info", "P[3] = -60", "P[3] = 0", "swapped"}},
-      {[](Calibration& c) { c.left.P[0] = 510.0; }, {"fx = 510", "fx = 500", "1 %"}},
-      {[](Calibration& c) { c.left.P[6] = 250.0; }, {"cy = 250", "rows"}},
-      {[](Calibration& c) { c.left.width = 320; }, {"left/camera_info", "320 x 480", "640 x 480"}},
-      {[](Calibration& c) { c.right.binning_x = 2; }, {"right/camera_info", "320 x 480", "binning"}},
-      {[](Calibration& c) { c.right.roi.width = 600; }, {"right/camera_info", "600 x 480", "roi"}},
-      {[](Calibration& c) { c.right.binning_y = 4000000000U; }, {"right/camera_info", "640 x 0"}},
-      {[](Calibration& c) { c.left.P[0] = 1e300; }, {"left/camera_info", "P[0] = 1e+300", "1e+06"}},
-      {[](Calibration& c) { c.left.P[2] = -1e30; }, {"left/camera_info", "P[2] = -1e+30", "calibrate"}},
-      {[](Calibration& c) { c.right.roi.x_offset = 0xFFFFFFFFU; }, {"right/camera_info", "P[2] = -4.29", "roi"}},
-      {[](Calibration& c) { c.right.P[3] = -1e300; }, {"right/camera_info", "baseline of 2e+297 m", "metres"}},
-      {[](Calibration& c) { c.right.P[3] = -1e-300; }, {"right/camera_info", "baseline of 2e-303 m"}},
-  };
-  for (const auto& [change, expected] : cases) {
-    Calibration c;
-    change(c);
-    expectContains(c.error(), expected);
-  }
 }
 
 class DisparityMessage : public ::testing::Test {

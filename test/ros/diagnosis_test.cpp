@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/io.hpp"
 #include "messages.hpp"
 
 namespace fdp_stereo {
@@ -61,8 +62,75 @@ TEST(Diagnose, MissingTopics) {
 
 TEST(Diagnose, StampsThatDoNotMeet) {
   Observation seen = healthy();
+  seen.disparities = 0;
   for (auto& stamp : seen.inputs[2].stamps) stamp += ros::Duration(0.008);
   expectContains(first(seen, Verdict::kWrong), {"only 0 %", "/cam/right/image_rect", "8 ms", "approximate_sync:=true"});
+}
+
+/// A node that pairs near stamps, and does.
+TEST(Diagnose, ApproximateSyncThatWorks) {
+  Observation seen = healthy();
+  for (auto& stamp : seen.inputs[2].stamps) stamp += ros::Duration(0.008);
+  seen.approximate_sync = true;
+  EXPECT_EQ(first(seen, Verdict::kWrong) + first(seen, Verdict::kOdd), "");
+  seen.disparities = 0;
+  expectContains(first(seen, Verdict::kWrong), {"8 ms", "queue_size"});
+  seen.tolerance_s = 0.005;
+  expectContains(first(seen, Verdict::kWrong), {"8 ms", "approximate_sync_tolerance above 0.008 s"});
+}
+
+/// Throttled on either side, or a camera_info that is sent once.
+TEST(Diagnose, UnequalRates) {
+  for (const std::size_t slow : {0U, 1U, 2U, 3U}) {
+    Observation seen = healthy();
+    auto& stamps = seen.inputs[slow].stamps;
+    for (std::size_t i = 0; i < stamps.size(); ++i) stamps.erase(stamps.begin() + static_cast<std::ptrdiff_t>(i));
+    seen.disparities = 10;
+    EXPECT_EQ(first(seen, Verdict::kWrong), "") << slow;
+    expectContains(first(seen, Verdict::kOdd),
+                   {"the rates differ", "20 ", "10 ", "than messages of " + seen.inputs[slow].topic});
+  }
+  Observation once = healthy();
+  once.inputs[3].stamps = {ros::Time(99.0)};
+  once.disparities = 0;
+  expectContains(first(once, Verdict::kOdd), {"1 of /cam/right/camera_info"});
+  expectContains(first(once, Verdict::kWrong), {"only 0 %", "/cam/right/camera_info", "stamp of its image"});
+}
+
+TEST(Diagnose, ViewsThatAreSwapped) {
+  Observation seen = healthy();
+  auto messages = test::goodMessages(320, 240);
+  std::swap(messages.left, messages.right);
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kWrong),
+                 {"images are swapped", "beyond infinity", "exchange /cam/left/image_rect and /cam/right/image_rect"});
+}
+
+/// The sample pair, whose principal points differ: exchanged, only its far half lies beyond infinity.
+TEST(Diagnose, ViewsOfVergedCamerasThatAreSwapped) {
+  const std::string folder = FDP_STEREO_SOURCE_DIR "/sample/motorcycle/";
+  const cv::Mat left = readImage(folder + "left.png");
+  const cv::Mat right = readImage(folder + "right.png");
+  test::Messages messages{test::imageMessage(left, "bgr8"), test::imageMessage(right, "bgr8"),
+                          test::cameraInfo(left.cols, left.rows, 994.978, 311.193, 254.877, 0.0),
+                          test::cameraInfo(left.cols, left.rows, 994.978, 342.279, 254.877, -994.978 * 0.193001)};
+  Observation seen = healthy();
+  seen.pair = messages.frame();
+  EXPECT_EQ(first(seen, Verdict::kWrong), "");
+  std::swap(messages.left, messages.right);
+  seen.pair = messages.frame();
+  expectContains(first(seen, Verdict::kWrong), {"images are swapped"});
+}
+
+/// Principal points that differ: negative disparities are near things.
+TEST(Diagnose, VergedCamerasAreNotSwapped) {
+  Observation seen = healthy();
+  auto messages = test::goodMessages(320, 240);
+  std::swap(messages.left, messages.right);
+  messages.right_info.P[2] += 30.0;
+  seen.pair = messages.frame();
+  seen.range = {-29, 64};
+  EXPECT_EQ(first(seen, Verdict::kWrong), "");
 }
 
 TEST(Diagnose, CalibrationThatCannotBeUsedOrIsOdd) {
@@ -94,6 +162,19 @@ TEST(Diagnose, RangeThatMissesTheScene) {
   seen.range = {16, 32};
   expectContains(first(seen, Verdict::kWrong),
                  {"100 %", "16 to 47 px", "dynparam set /cam/disparity", "min_disparity: 5"});
+}
+
+TEST(Diagnose, RangeOutsideTheImage) {
+  Observation seen = healthy();
+  seen.range = {320, 64};
+  expectContains(first(seen, Verdict::kWrong), {"min_disparity = 320", "320 px wide", "dynparam set /cam/disparity"});
+}
+
+TEST(Diagnose, SaysHowNearItSees) {
+  const auto findings = diagnose(healthy());
+  EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.text.find("sees from 0.317 m (disparities 0 to 63 px)") != std::string::npos;
+  }));
 }
 
 TEST(Diagnose, NoTextureAndNoOutput) {

@@ -8,6 +8,7 @@
 
 #include <dynamic_reconfigure/config_tools.h>
 #include <gtest/gtest.h>
+#include <image_transport/image_transport.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <opencv2/imgproc.hpp>
 
@@ -135,7 +136,7 @@ TEST(DisparityNodelet, SubscribesOnlyWhileSomebodyListens) {
 
 TEST(DisparityNodelet, DepthAndConfidence) {
   NodeletGraph graph("/outputs");
-  Inbox<sensor_msgs::Image> depth(graph.node(), "depth");
+  Inbox<sensor_msgs::Image> depth(graph.node(), "depth/image_rect");
   Inbox<sensor_msgs::CameraInfo> info(graph.node(), "depth/camera_info");
   Inbox<sensor_msgs::Image> confidence(graph.node(), "confidence");
   const auto connected = [&] {
@@ -157,6 +158,43 @@ TEST(DisparityNodelet, DepthAndConfidence) {
   EXPECT_GE(lowest, 0.0);
   EXPECT_GT(highest, 0.0);
   EXPECT_LE(highest, 1.0);
+}
+
+/// As depth_image_proc and other consumers subscribe: camera_info is looked for beside the image.
+TEST(DisparityNodelet, DepthForACameraSubscriber) {
+  NodeletGraph graph("/camera_subscriber");
+  image_transport::ImageTransport transport(graph.node());
+  std::atomic<int> received{0};
+  double depth = 0.0;
+  image_transport::CameraSubscriber subscriber = transport.subscribeCamera(
+      "depth/image_rect", 5, [&](const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info) {
+        EXPECT_EQ(image->header.stamp, info->header.stamp);
+        EXPECT_EQ(info->P[0], test::kFocal);
+        if (received == 0) depth = pixels(*image).at<float>(60, 80);
+        ++received;
+      });
+  EXPECT_EQ(subscriber.getInfoTopic(), "/camera_subscriber/depth/camera_info");
+  const auto came = [&] {
+    graph.process(goodMessages());
+    return received > 0;
+  };
+  EXPECT_TRUE(waitUntil(came));
+  subscriber.shutdown();
+  EXPECT_NEAR(depth, test::kFocal * test::kBaseline / test::kPlaneDisparity, 0.05);
+}
+
+TEST(DisparityNodelet, TheOldNameOfDepthBringsTheSame) {
+  NodeletGraph graph("/old_name");
+  Inbox<sensor_msgs::Image> depth(graph.node(), "depth/image_rect");
+  Inbox<sensor_msgs::Image> old(graph.node(), "depth");
+  ASSERT_TRUE(waitUntil([&] { return depth.publishers() == 1 && old.publishers() == 1; }));
+  const auto disparity = graph.process(goodMessages());
+  ASSERT_TRUE(disparity);
+  const auto same_stamp = [&](const auto& m) { return m.header.stamp == disparity->header.stamp; };
+  const auto by_new_name = depth.wait(same_stamp);
+  const auto by_old_name = old.wait(same_stamp);
+  ASSERT_TRUE(by_new_name && by_old_name);
+  EXPECT_EQ(by_new_name->data, by_old_name->data);
 }
 
 TEST(DisparityNodelet, ColoursForPlainImageViewers) {
@@ -219,6 +257,14 @@ TEST(DisparityNodelet, ABadPresetFallsBackAndSaysSo) {
   EXPECT_TRUE(graph.process(goodMessages()));
 }
 
+/// roslaunch starts nodes in a folder of its own.
+TEST(DisparityNodelet, APresetWithARelativeNameTellsWhereItLooked) {
+  LogLines log;
+  NodeletGraph graph("/relative_preset", {{"preset", std::string("my.yaml")}});
+  EXPECT_NE(log.wait({"~preset", "my.yaml", "looked in " + std::filesystem::current_path().string(), "using fast"}),
+            "");
+}
+
 TEST(DisparityNodelet, BadParametersOfTheStartAreSaid) {
   LogLines log;
   NodeletGraph graph("/bad_start", {{"image_transport", std::string("no_such")},
@@ -231,6 +277,23 @@ TEST(DisparityNodelet, BadParametersOfTheStartAreSaid) {
   EXPECT_NE(log.wait({"~approximate_sync_tolerance", "using 0"}), "");
   EXPECT_NE(log.wait({"~queue_size = -5", "using 1"}), "");
   EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+/// A calibration in another unit, and what the range can see: once each, however many pairs come.
+TEST(DisparityNodelet, TellsOnceWhatHoldsForTheCamera) {
+  LogLines log;
+  NodeletGraph graph("/unit");
+  Messages messages = goodMessages();
+  messages.right_info.P[3] = -20000.0;
+  const auto disparity = graph.process(messages);
+  ASSERT_TRUE(disparity);
+  EXPECT_FLOAT_EQ(disparity->T, 100.0F);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(graph.process(messages));
+  EXPECT_NE(log.wait({"/unit/right/camera_info", "P[3] = -20000", "100 m", "millimetres"}), "");
+  const std::vector<std::string> lines = log.lines();
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& line) { return line.find("millimetres") != std::string::npos; }),
+            1);
 }
 
 /// Nice levels of the threads of this process.

@@ -195,6 +195,79 @@ TEST(FrameProcessor, VergedCameras) {
   EXPECT_NEAR(pixels(*output.depth).at<float>(60, 80), kFocal * kBaseline / (kPlaneDisparity + 20), 0.02);
 }
 
+/// P[3] of the left camera may be anything: the distance of the cameras counts.
+TEST(FrameProcessor, DepthOfAPlaneForAnyOrigin) {
+  const double baseline_px = kFocal * kBaseline;
+  const double true_depth = kFocal * kBaseline / kPlaneDisparity;
+  for (const double left : {0.0, -baseline_px, baseline_px, 0.5 * baseline_px, -7.3, 1e4}) {
+    Messages messages = goodMessages();
+    messages.left_info.P[3] = left;
+    messages.right_info.P[3] = left - baseline_px;
+    const FrameOutput output = run(messages);
+    EXPECT_FLOAT_EQ(output.disparity->T, static_cast<float>(kBaseline)) << left;
+    const cv::Mat depth = pixels(*output.depth);
+    const int near_plane = cv::countNonZero(cv::abs(depth - true_depth) < 0.01 * true_depth);
+    EXPECT_GT(near_plane, 0.85 * static_cast<double>(depth.total())) << left;
+    EXPECT_EQ(output.depth_info->P, messages.left_info.P);
+    EXPECT_TRUE(output.report.warnings.empty());
+    const auto& notes = output.report.notes;
+    ASSERT_EQ(notes.size(), left == 0.0 ? 1U : 2U);
+    EXPECT_EQ(notes.back().find("beside the origin") != std::string::npos, left != 0.0) << notes.back();
+  }
+}
+
+TEST(FrameProcessor, ToldWhatTheRangeCanSee) {
+  Messages messages = goodMessages();
+  NodeSettings s = settings();  // 0 to 31 px of 20 m px
+  EXPECT_NE(run(messages, s).report.notes[0].find("sees from 0.645 m (disparities 0 to 31 px)"), std::string::npos);
+  s.pipeline.search = {4, 28};
+  EXPECT_NE(run(messages, s).report.notes[0].find("sees from 0.645 m to 5 m"), std::string::npos);
+  s.pipeline.search = {0, 1000};  // no wider than the image
+  EXPECT_NE(run(messages, s).report.notes[0].find("sees from 0.126 m"), std::string::npos);
+  s.pipeline.search = {0, 8};
+  messages.right_info.P[2] -= 20.0;
+  const FrameReport beyond = run(messages, s).report;
+  ASSERT_EQ(beyond.warnings.size(), 1U);
+  EXPECT_NE(beyond.warnings[0].find("beyond infinity"), std::string::npos);
+  EXPECT_NE(beyond.warnings[0].find("set min_disparity to 20"), std::string::npos);
+}
+
+/// Rows of the right image moved down.
+Messages movedRows(double px) {
+  Messages messages = goodMessages(320, 240);
+  cv::Mat moved;
+  cv::warpAffine(decodeImage(messages.right, ""), moved, cv::Matx23d(1, 0, 0, 0, 1, px), {320, 240}, cv::INTER_CUBIC,
+                 cv::BORDER_REPLICATE);
+  messages.right = imageMessage(moved, "mono8");
+  return messages;
+}
+
+/// At every scale the limit and the text are px of the images as given.
+TEST(FrameProcessor, RowsThatAreOffAreTold) {
+  for (const double scale : {1.0, 0.5}) {
+    NodeSettings s = settings();
+    s.pipeline.scale = scale;
+    s.pipeline.row_alignment.warn_px = 1.5;
+    FrameProcessor processor({});
+    const FrameReport report = processor.process(movedRows(2.0).frame(), s, {}).report;
+    ASSERT_EQ(report.warnings.size(), 1U) << scale;
+    EXPECT_NE(report.warnings[0].find("off by 2.0"), std::string::npos) << report.warnings[0];
+    EXPECT_NE(report.warnings[0].find("constant model"), std::string::npos) << report.warnings[0];
+    EXPECT_NEAR(report.pipeline.row_alignment.offset_rms_px, 2.0, 0.1);
+    EXPECT_GT(report.pipeline.row_alignment.rms_before_px, 1.8);
+    EXPECT_LT(report.pipeline.row_alignment.rms_after_px, 0.3);
+    const FrameReport again = processor.process(movedRows(2.1).frame(), s, {}).report;
+    ASSERT_EQ(again.warnings.size(), 1U);
+    EXPECT_EQ(again.warnings[0], report.warnings[0]) << "one text, not one per pair";
+    const FrameReport worse = processor.process(movedRows(3.5).frame(), s, {}).report;
+    ASSERT_EQ(worse.warnings.size(), 1U);
+    EXPECT_NE(worse.warnings[0].find("off by 3."), std::string::npos) << worse.warnings[0];
+    s.pipeline.row_alignment.warn_px = 5.0;
+    ++s.revision;
+    EXPECT_TRUE(processor.process(movedRows(3.5).frame(), s, {}).report.warnings.empty());
+  }
+}
+
 TEST(FrameProcessor, BinningKeepsTheDistance) {
   Messages messages = goodMessages();
   for (auto* info : {&messages.left_info, &messages.right_info}) {

@@ -15,9 +15,9 @@ class Status : public ::testing::Test {
     before_.subscribed = true;
     const char* topics[] = {"/cam/left/image_rect", "/cam/left/camera_info", "/cam/right/image_rect",
                             "/cam/right/camera_info"};
-    for (std::size_t i = 0; i < 4; ++i) before_.inputs[i] = {topics[i], 100, 1, ros::Time(50.0)};
+    for (std::size_t i = 0; i < 4; ++i) before_.inputs[i] = {topics[i], 1, {100, ros::Time(50.0)}};
     now_ = before_;
-    for (auto& input : now_.inputs) input.received = 250;
+    for (auto& input : now_.inputs) input.count.received = 250;
   }
   std::string silence() const { return describeSilence(now_, before_, 15.0); }
   std::string summary() const {
@@ -54,19 +54,19 @@ TEST_F(Status, NoSilenceWhereNobodyListens) {
 }
 
 TEST_F(Status, SilenceOfATopicWithoutPublisher) {
-  now_.inputs[3].received = 100;
+  now_.inputs[3].count.received = 100;
   now_.inputs[3].publishers = 0;
   expectContains(silence(), {"15 s", "/cam/left/image_rect 150", "/cam/right/camera_info 0",
                              "/cam/right/camera_info has no publisher", "rostopic list"});
 }
 
 TEST_F(Status, SilenceOfATopicThatSendsNothing) {
-  now_.inputs[2].received = 100;
+  now_.inputs[2].count.received = 100;
   expectContains(silence(), {"/cam/right/image_rect has a publisher that sends nothing", "rostopic hz"});
 }
 
 TEST_F(Status, SilenceOfStampsThatDoNotMeet) {
-  now_.inputs[2].stamp = now_.inputs[3].stamp = ros::Time(50.0125);
+  now_.inputs[2].count.stamp = now_.inputs[3].count.stamp = ros::Time(50.0125);
   expectContains(silence(), {"/cam/left/image_rect and /cam/right/image_rect", "12.5 ms", "~approximate_sync"});
   now_.approximate_sync = true;
   expectContains(silence(), {"12.5 ms", "~approximate_sync_tolerance"});
@@ -104,22 +104,37 @@ TEST_F(Status, Values) {
   now_.dropped = 7;
   now_.latency_ms = 41.26;
   now_.revision = 3;
-  now_.frame.times = {{"optimizer", 20.04}};
+  now_.frame.pipeline.times = {{"optimizer", 20.04}};
+  now_.frame.pipeline.row_alignment.note = "affine row offset, 0.52 px RMS";
+  now_.frame.pipeline.row_alignment.rms_before_px = 0.6;
+  now_.frame.pipeline.row_alignment.rms_after_px = 0.114;
+  now_.frame.notes = {"sees from 0.76 m"};
   EXPECT_EQ(value("/cam/left/image_rect"), "250 received, 10.0 Hz");
   EXPECT_EQ(value("Output rate (Hz)"), "2.00");
   EXPECT_EQ(value("Pairs dropped (overload)"), "7");
   EXPECT_EQ(value("Latency (ms)"), "41.3");
   EXPECT_EQ(value("Stage optimizer (ms)"), "20.0");
   EXPECT_EQ(value("Parameter revision"), "3");
+  now_.apart_ms = 40.04;
+  EXPECT_EQ(value("Stamps of left and right apart (ms)"), "40.0");
+  now_.age_ms = 51.26;
+  EXPECT_EQ(value("Age of the output (ms)"), "51.3");
+  for (const double another_clock : {1.77e12, -1.77e12}) {
+    now_.age_ms = another_clock;
+    expectContains(value("Age of the output (ms)"), {"unknown", "--clock"});
+  }
+  EXPECT_EQ(value("Row alignment"), "affine row offset, 0.52 px RMS");
+  EXPECT_EQ(value("Row residuals before and after (px)"), "0.60, 0.11");
+  EXPECT_EQ(value("Notes"), "sees from 0.76 m");
 }
 
-TEST(LogThrottle, SaysATextOnceInAWhile) {
+TEST(LogThrottle, SaysATextOnceWhileItKeepsComing) {
   LogThrottle throttle(std::chrono::seconds(10), 3);
   const LogThrottle::Clock::time_point start{};
   EXPECT_TRUE(throttle.allow("a", start));
-  EXPECT_FALSE(throttle.allow("a", start + std::chrono::seconds(9)));
-  EXPECT_TRUE(throttle.allow("b", start + std::chrono::seconds(9)));
-  EXPECT_TRUE(throttle.allow("a", start + std::chrono::seconds(10)));
+  for (const int second : {5, 9, 18, 27, 36}) EXPECT_FALSE(throttle.allow("a", start + std::chrono::seconds(second)));
+  EXPECT_TRUE(throttle.allow("b", start + std::chrono::seconds(36)));
+  EXPECT_TRUE(throttle.allow("a", start + std::chrono::seconds(46))) << "it was away";
 }
 
 TEST(LogThrottle, BoundsTextsThatAlwaysDiffer) {

@@ -21,6 +21,16 @@ TEST(PeriodicTask, CallsAgainAndAgain) {
   EXPECT_EQ(three.get_future().wait_for(60s), std::future_status::ready);
 }
 
+TEST(PeriodicTask, ACallThatThrowsIsNotTheLast) {
+  std::promise<void> again;
+  std::atomic<int> calls{0};
+  const PeriodicTask task(1ms, [&] {
+    if (++calls == 1) throw std::bad_alloc();
+    if (calls == 2) again.set_value();
+  });
+  EXPECT_EQ(again.get_future().wait_for(60s), std::future_status::ready);
+}
+
 TEST(PeriodicTask, EndsWithoutWaitingForThePeriod) {
   std::atomic<int> calls{0};
   {

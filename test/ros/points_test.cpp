@@ -116,6 +116,16 @@ TEST(Points, AConsumerThatEndsLeavesTheManagerAlone) {
   EXPECT_TRUE(disparity.wait([&](const auto& d) { return d.header.stamp == messages.left.header.stamp; }));
 }
 
+/// The last test: without its manager the loader says so and ends.
+TEST(Points, AManagerThatDiesIsTold) {
+  Inbox<rosgraph_msgs::Log> log(ros::NodeHandle(), "/rosout");
+  ASSERT_TRUE(test::waitUntil([&] { return log.publishers() > 3; }));
+  killNode("/stereo_manager");
+  EXPECT_TRUE(log.wait([](const auto& line) {
+    return line.name == "/parallel/disparity" && line.msg.find("Bond broken") != std::string::npos;
+  }));
+}
+
 }  // namespace
 }  // namespace fdp_stereo
 

@@ -43,15 +43,24 @@ std::string errorOf(Call&& call) {
 }
 
 TEST(ProjectSeeds, PixelAndDisparityOfAPoint) {
-  const SeedQuality quality{0.8, 0.25, 1.0};
+  const SeedQuality quality{0.8, 1.0};
   const Seeds seeds = projectSeeds({{0.1, -0.05, 2.0}}, kLeft, kGeometry, quality, SeedSource::kPoints);
   ASSERT_EQ(seeds.size(), 1U);
   EXPECT_FLOAT_EQ(seeds[0].x, 90.0F);  // 200 * 0.1 / 2 + 80
   EXPECT_FLOAT_EQ(seeds[0].y, 55.0F);  // 200 * -0.05 / 2 + 60
   EXPECT_FLOAT_EQ(seeds[0].d, 5.0F);   // published 200 * 0.1 / 2 = 10, as given 10 - 5
   EXPECT_FLOAT_EQ(seeds[0].trust, 0.8F);
-  EXPECT_FLOAT_EQ(seeds[0].sigma_px, 0.25F);
   EXPECT_EQ(seeds[0].source, SeedSource::kPoints);
+}
+
+/// The left camera 0.05 m beside the origin of its frame.
+TEST(ProjectSeeds, ProjectsByTheWholeOfP) {
+  PinholeCamera left = kLeft;
+  left.tx = -10.0;
+  const Seeds seeds = projectSeeds({{0.15, -0.05, 2.0}}, left, kGeometry, {0.8, 1.0}, SeedSource::kPoints);
+  ASSERT_EQ(seeds.size(), 1U);
+  EXPECT_FLOAT_EQ(seeds[0].x, 90.0F);  // (200 * 0.15 - 10) / 2 + 80
+  EXPECT_FLOAT_EQ(seeds[0].d, 5.0F);
 }
 
 TEST(ProjectSeeds, LeavesOutWhatTheCameraCannotSee) {
@@ -60,7 +69,7 @@ TEST(ProjectSeeds, LeavesOutWhatTheCameraCannotSee) {
 }
 
 TEST(ProjectSeeds, PointsBehindNearerOnesAreHidden) {
-  const SeedQuality quality{0.9, 0.5, 4.0};
+  const SeedQuality quality{0.9, 4.0};
   // Pixels (80, 60), and 3 px beside it but twice as far; a third one far away in the image.
   const Points points = {{0.0, 0.0, 1.0}, {0.03, 0.0, 2.0}, {0.6, 0.0, 2.0}};
   const Seeds seeds = projectSeeds(points, kLeft, kGeometry, quality, SeedSource::kPoints);
@@ -74,7 +83,7 @@ TEST(ProjectSeeds, OnePerSquare) {
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 40; ++x) points.emplace_back(x / 200.0, y / 200.0, 1.0 + 1e-6 * (x + y));
   }
-  const Seeds seeds = projectSeeds(points, kLeft, kGeometry, {0.9, 0.5, 4.0}, SeedSource::kPoints);
+  const Seeds seeds = projectSeeds(points, kLeft, kGeometry, {0.9, 4.0}, SeedSource::kPoints);
   EXPECT_EQ(seeds.size(), 100U);
 }
 
@@ -132,10 +141,35 @@ TEST(PointsOfDepth, MillimetresAndMetresOfAnyResolution) {
     ASSERT_EQ(a.size(), 1198U);
     ASSERT_EQ(b.size(), 1198U);
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-6);
-    const Seeds seeds = projectSeeds(a, kLeft, kGeometry, {0.9, 0.5, 1.0}, SeedSource::kDepth);
+    const Seeds seeds = projectSeeds(a, kLeft, kGeometry, {0.9, 1.0}, SeedSource::kDepth);
     EXPECT_FLOAT_EQ(seeds[0].d, 5.0F);
     EXPECT_NEAR(seeds[0].x, 4 * 2 + 1.5, 1e-3) << "the centre of four pixels";
   }
+}
+
+/// What the node publishes as depth comes back to the same pixels, wherever the origin of the frame is.
+TEST(PointsOfDepth, OfACameraBesideItsOrigin) {
+  const auto info = test::cameraInfo(160, 120, 200.0, 80.0, 60.0, -10.0);
+  const cv::Mat metres(120, 160, CV_32FC1, cv::Scalar(2.0));
+  const PinholeCamera left = pinholeCamera(info, metres.size());
+  const Points points = pointsOfDepth(test::imageMessage(metres, "32FC1"), info, 7, "seeds/depth");
+  EXPECT_NEAR(points[0].x(), (-80.0 * 2.0 + 10.0) / 200.0, 1e-12);
+  const Seeds seeds = projectSeeds(points, left, kGeometry, {0.9, 1.0}, SeedSource::kDepth);
+  ASSERT_EQ(seeds.size(), points.size());
+  EXPECT_NEAR(seeds[1].x, 7.0, 1e-4);
+  const auto message =
+      toDisparityMessage(cv::Mat(120, 160, CV_32FC1, cv::Scalar(10)), {}, {200.0, 0.1, 0.0}, {0, 32}, 1);
+  const Points of_disparity = pointsOfDisparity(*message, left, 7, "seeds/disparity");
+  ASSERT_EQ(of_disparity.size(), points.size());
+  EXPECT_LT((of_disparity[1] - points[1]).norm(), 1e-6);
+}
+
+TEST(PointsOfDepth, BinnedInfo) {
+  auto info = test::cameraInfo(160, 120, 200.0, 80.0, 60.0, 0.0);
+  info.binning_x = info.binning_y = 2;
+  const cv::Mat metres(60, 80, CV_32FC1, cv::Scalar(2.0));
+  const Points points = pointsOfDepth(test::imageMessage(metres, "32FC1"), info, 1, "seeds/depth");
+  EXPECT_NEAR(points[0].x(), -40.0 * 2.0 / 100.0, 1e-12);
 }
 
 TEST(PointsOfDepth, RefusesWhatIsNoDepth) {
@@ -153,7 +187,7 @@ TEST(PointsOfDisparity, ScalesWithResolutionAndBaseline) {
   const auto message = toDisparityMessage(map, {}, {100.0, 0.2, 0.0}, {0, 32}, 1.0);
   const Points points = pointsOfDisparity(*message, kLeft, 4, "seeds/disparity");
   ASSERT_EQ(points.size(), 300U);
-  const Seeds seeds = projectSeeds(points, kLeft, kGeometry, {0.9, 0.5, 1.0}, SeedSource::kDisparity);
+  const Seeds seeds = projectSeeds(points, kLeft, kGeometry, {0.9, 1.0}, SeedSource::kDisparity);
   EXPECT_NEAR(seeds[0].d, 5.0, 1e-4);
   EXPECT_NEAR(seeds[0].x, 0.5, 1e-3);
 }

@@ -28,7 +28,6 @@ Seeds scaled(Seeds seeds, double x, double y) {
     seed.x = moved(seed.x, x);
     seed.y = moved(seed.y, y);
     seed.d *= static_cast<float>(x);
-    seed.sigma_px *= static_cast<float>(x);
   }
   return seeds;
 }

@@ -248,22 +248,25 @@ void measure(const std::vector<Sample>& samples, RowAlignment& result) {
   result.rms_after_px = std::sqrt(after / std::max(1, result.matches_used));
 }
 
-/// The note and the warning of a choice.
-void describe(const RowAlignmentParams& params, const Choice& choice, RowAlignment& result) {
+/// The note and the warning of a choice, in px of the images as given.
+void describe(const RowAlignmentParams& params, const Choice& choice, double given_px, RowAlignment& result) {
+  const double offset_px = given_px * result.offset_rms_px;
   if (!result.model.identity()) {
-    result.note = result.model.name() + (" row offset, " + px(result.offset_rms_px)) + " RMS";
+    result.note = result.model.name() + (" row offset, " + px(offset_px)) + " RMS";
   } else if (choice.order >= 0) {
-    result.note = "identity: the offset is only " + px(choice.offset_rms_px);
+    result.note = "identity: the offset is only " + px(given_px * choice.offset_rms_px);
   } else {
     result.note = "identity: matches held out of the fit do not support an offset";
   }
-  if (result.offset_rms_px > params.warn_px) {
-    result.warning =
-        "the rows of the views are off by " + px(result.offset_rms_px) + " RMS: calibrate the cameras anew";
+  if (offset_px > params.warn_px) {
+    result.warning = "the rows of the views are off by " + px(offset_px) + " RMS (" + result.model.name() +
+                     " model; residuals of the matches " + px(given_px * result.rms_before_px) + " before and " +
+                     px(given_px * result.rms_after_px) + " after the alignment): calibrate the cameras anew";
   }
 }
 
-RowAlignment estimate(const std::vector<Sample>& samples, cv::Size size, const RowAlignmentParams& params) {
+RowAlignment estimate(const std::vector<Sample>& samples, cv::Size size, const RowAlignmentParams& params,
+                      double given_px) {
   RowAlignment result;
   result.model.size = size;
   if (static_cast<int>(samples.size()) < kMinMatches[0]) {
@@ -282,7 +285,7 @@ RowAlignment estimate(const std::vector<Sample>& samples, cv::Size size, const R
     result.sigma_px = rmsOverImage(choice.fit.covariance, size);
   }
   measure(samples, result);
-  describe(params, choice, result);
+  describe(params, choice, given_px, result);
   return result;
 }
 
@@ -297,10 +300,11 @@ double RowOffsetModel::offsetAt(double x, double y) const {
   return identity() ? 0.0 : basisAt(x, y, size).dot(coefficients);
 }
 
-RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params) {
+RowAlignment estimateRowAlignment(const FeatureMatches& matches, cv::Size size, const RowAlignmentParams& params,
+                                  double given_px) {
   std::vector<Sample> samples;
   for (const FeatureMatch& m : matches) samples.push_back(makeSample(m, 1.0, size));
-  return estimate(samples, size, params);
+  return estimate(samples, size, params, given_px);
 }
 
 /// Would most of the matches, were the last model true, lie where they do?
@@ -320,7 +324,7 @@ bool RowAlignmentAccumulator::contradicts(const FeatureMatches& matches) const {
 }
 
 RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::Size size,
-                                             const RowAlignmentParams& params) {
+                                             const RowAlignmentParams& params, double given_px) {
   if (params.mode == RowAlignmentMode::kPerFrame || size != last_.size || contradicts(matches)) history_.clear();
   for (Aged& aged : history_) aged.weight *= params.forgetting;
   history_.erase(std::remove_if(history_.begin(), history_.end(), [](const Aged& a) { return a.weight < kForgotten; }),
@@ -331,7 +335,7 @@ RowAlignment RowAlignmentAccumulator::update(const FeatureMatches& matches, cv::
   }
   std::vector<Sample> samples;
   for (const Aged& aged : history_) samples.push_back(makeSample(aged.match, aged.weight, size));
-  RowAlignment result = estimate(samples, size, params);
+  RowAlignment result = estimate(samples, size, params, given_px);
   last_ = result.model;
   return result;
 }

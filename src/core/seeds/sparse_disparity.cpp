@@ -22,8 +22,6 @@ constexpr int kNeighbours = 12;
 constexpr int kMinAgreeing = 2;
 /// |dI|_1 per channel at which the say of a neighbour falls to 1/e.
 constexpr float kColourScale = 20.0F;
-/// Standard deviation of the disparity of a right match.
-constexpr float kMatchSigmaPx = 0.15F;
 
 bool before(const Seed& a, const Seed& b) { return std::tie(a.y, a.x, a.d) < std::tie(b.y, b.x, b.d); }
 
@@ -39,7 +37,6 @@ Seed fromMatch(const FeatureMatch& match) {
   seed.y = match.left.y;
   seed.d = match.disparity();
   seed.trust = match.trust;
-  seed.sigma_px = kMatchSigmaPx;
   return seed;
 }
 

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <sensor_msgs/CameraInfo.h>
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+/// What camera_info says of one camera and of a rectified pair. Pure functions.
+namespace fdp_stereo {
+
+/// Names of the inputs for messages to people; relative or resolved.
+struct StereoTopics {
+  std::string left_image = "left/image_rect";
+  std::string right_image = "right/image_rect";
+  std::string left_info = "left/camera_info";
+  std::string right_info = "right/camera_info";
+};
+
+/// P of a camera in px of its image as published: camera_info speaks of the full sensor. Points are those of the frame
+/// that P projects from; with tx or ty the camera is not at its origin but at (-tx / fx, -ty / fy, 0).
+struct PinholeCamera {
+  double fx = 0.0;
+  double fy = 0.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  cv::Size size;
+  double tx = 0.0;  ///< px * m
+  double ty = 0.0;  ///< px * m
+
+  Eigen::Vector2d project(const Eigen::Vector3d& point) const {
+    return {(fx * point.x() + tx) / point.z() + cx, (fy * point.y() + ty) / point.z() + cy};
+  }
+  Eigen::Vector3d backProject(double u, double v, double z) const {
+    return {((u - cx) * z - tx) / fx, ((v - cy) * z - ty) / fy, z};
+  }
+  /// The same camera with an image of another resolution: pixel areas cover one another.
+  PinholeCamera scaled(double x, double y) const;
+};
+
+/// Binning and region of interest applied, from P where it is set, else from K; nothing is checked.
+PinholeCamera pinholeCamera(const sensor_msgs::CameraInfo& info, cv::Size image_size);
+
+/// px of the image that a camera_info describes, binning and region of interest applied; 0 where it does not say.
+struct DescribedSize {
+  std::uint32_t width;
+  std::uint32_t height;
+};
+DescribedSize describedSize(const sensor_msgs::CameraInfo& info);
+
+/// Geometry of a rectified pair in px of the images as published (binning and region of interest applied).
+struct StereoGeometry {
+  double focal_px = 0.0;
+  double baseline_m = 0.0;    ///< > 0
+  double cx_offset_px = 0.0;  ///< cx_left - cx_right: 0 for parallel cameras, not 0 for verged ones
+  /// The disparity as published: (x_l - x_r) - (cx_l - cx_r), so that Z = f T / d.
+  double published(double disparity) const { return disparity - cx_offset_px; }
+  /// m along the optical axis; infinite where the disparity as published is not above 0.
+  double depth(double disparity) const;
+};
+
+/// Checks a calibration before anything is computed from it. image_size: px of the left image as received. Throws
+/// std::invalid_argument where no right depth can come out; appends to `warnings` where the data are usable but odd.
+StereoGeometry stereoGeometry(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
+                              cv::Size image_size, const StereoTopics& topics, std::vector<std::string>& warnings);
+
+}  // namespace fdp_stereo

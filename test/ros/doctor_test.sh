@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The fdp_stereo authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# doctor_test.sh DEVEL: doctor.launch beside a node and a recording that plays: all well, exchanged images, a throttled
+# camera. It ends by itself and without calling that a death.
+set -euo pipefail
+export PATH="/usr/bin:/bin:$PATH"
+set +u
+# shellcheck source=/dev/null
+. "$1/setup.bash"
+set -u
+port=11420
+work="$(mktemp -d)"
+export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work" ROS_LOG_DIR="$work"
+trap 'kill "${node:-}" "${play:-}" "${throttle:-}" "${master:-}" 2>/dev/null || true; rm -rf "$work"' EXIT
+bag="$1/share/fdp_stereo/sample/motorcycle.bag"
+
+rosmaster --core -p "$port" </dev/null >"$work/master.log" 2>&1 &
+master=$!
+for _ in $(seq 200); do
+  if rosparam list >/dev/null 2>&1; then break; fi
+  sleep 0.1
+done
+ROS_NAMESPACE=stereo "$1/lib/fdp_stereo/disparity_node" left/image_rect:=left/image_raw right/image_rect:=right/image_raw \
+  </dev/null >"$work/node.log" 2>&1 &
+node=$!
+
+play() {
+  rosbag play -q -l "$bag" "$@" </dev/null >/dev/null 2>&1 &
+  play=$!
+}
+stop() {
+  kill -INT "$1"
+  wait "$1" || true
+}
+# ask EXPECTED [ARGUMENT...]: doctor.launch says EXPECTED and ends with exit code 0.
+ask() {
+  local expected="$1"
+  shift
+  timeout 120 roslaunch fdp_stereo doctor.launch image:=image_raw seconds:=8 "$@" </dev/null >"$work/said" 2>&1 ||
+    { echo "roslaunch: exit code $?" >&2; cat "$work/said" >&2; exit 1; }
+  if ! grep -qE "$expected" "$work/said" || grep -q 'REQUIRED' "$work/said"; then
+    echo "expected: $expected" >&2
+    cat "$work/said" >&2
+    exit 1
+  fi
+}
+
+play
+ask '^good +disparity: '
+if grep -qE 'WRONG|has died' "$work/said"; then cat "$work/said" >&2; exit 1; fi
+rosrun topic_tools throttle messages /stereo/right/image_raw 1 /stereo/slow/image_raw </dev/null >/dev/null 2>&1 &
+throttle=$!
+rosrun topic_tools throttle messages /stereo/right/camera_info 1 /stereo/slow/camera_info </dev/null >/dev/null 2>&1 &
+slow_info=$!
+ask '^odd +the rates differ: .* of /stereo/slow/image_raw' right:=slow
+stop "$throttle"
+stop "$slow_info"
+stop "$play"
+play /stereo/left/image_raw:=/stereo/right/image_raw /stereo/right/image_raw:=/stereo/left/image_raw
+ask '^WRONG +left and right images are swapped'
+stop "$play"
+echo "passed"
