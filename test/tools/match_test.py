@@ -186,7 +186,8 @@ class MatchTest(unittest.TestCase):
     def test_version(self):
         with open(os.path.join(os.environ["FDP_STEREO_SOURCE"], "package.xml")) as file:
             version = re.search("<version>(.+)</version>", file.read()).group(1)
-        for tool in ("match", "evaluate", "make_seeds", "warp_rows", "process_bag", "images_to_bag"):
+        for tool in ("match", "evaluate", "make_seeds", "warp_rows", "process_bag", "images_to_bag", "demo_report",
+                     "latency_probe"):
             if os.path.exists(os.path.join(BIN, tool)):
                 code, out, _ = run(tool, "--version")
                 self.assertEqual((code, out), (0, "%s (fdp_stereo) %s\n" % (tool, version)))
