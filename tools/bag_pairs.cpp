@@ -138,7 +138,7 @@ std::string PairCollector::silence(const StereoTopics& topics) const {
             : options_.approximate   ? "; allow that with --approximate-sync-tolerance"
                                      : "; use --approximate-sync");
   };
-  const std::string images = apart(images_distance_, topics.left_image, topics.right_image);
+  std::string images = apart(images_distance_, topics.left_image, topics.right_image);
   if (!images.empty()) return images;
   for (const std::string& infos : {apart(left_info_distance_, topics.left_image, topics.left_info),
                                    apart(right_info_distance_, topics.right_image, topics.right_info)}) {

@@ -167,6 +167,16 @@ void checkRange(DisparityRange range, int width) {
                            " px wide can have one; set --min-disparity near 0");
 }
 
+/// Seeds of another picture, or of another size of it.
+void warnOfSeedsOutside(const Seeds& seeds, cv::Size size) {
+  const auto outside = std::count_if(seeds.begin(), seeds.end(), [&](const Seed& seed) {
+    return !cv::Rect(cv::Point(), size).contains({cvRound(seed.x), cvRound(seed.y)});
+  });
+  if (outside == 0) return;
+  std::cout << "warning: " << outside << " of " << seeds.size() << " seeds are outside the image, " << size.width
+            << " x " << size.height << " px, and not used\n";
+}
+
 /// Exchanged views have next to no match: a second look, the other way round, tells them from a hard scene.
 bool looksSwapped(const cv::Mat& left, const cv::Mat& right, const PipelineParams& params,
                   const PipelineResult& result) {
@@ -189,6 +199,7 @@ int match(const Options& options) {
   const cv::Mat right = readImage(options.right);
   checkRange(params.search, left.cols);
   const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds, left.size());
+  warnOfSeedsOutside(seeds, left.size());
   Pipeline pipeline(params);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) pipeline.setProgress(showProgress);

@@ -119,6 +119,8 @@ class MatchTest(unittest.TestCase):
         seeds = self.path("seeds.txt")
         with open(seeds, "w") as file:
             file.write("60 30 9\n20 30 4 0.9\n1000 1000 9\n")
+        out = self.match("--seeds", seeds)
+        self.assertIn("warning: 1 of 3 seeds are outside the image, 110 x 60 px", out)
         self.match("--seeds", seeds, "--timings", self.path("t.json"), "--set", "row_alignment.enabled=false", "--preset",
                    "paper")
         with open(self.path("t.json")) as file:
