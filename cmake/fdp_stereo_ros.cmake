@@ -40,14 +40,15 @@ add_library(fdp_stereo_bags STATIC
   tools/rectifier.cpp
 )
 target_link_libraries(fdp_stereo_bags PUBLIC fdp_stereo_nodelet fdp_stereo_tool_support PRIVATE yaml-cpp)
-foreach(tool images_to_bag process_bag)
-  fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
-  target_link_libraries(${tool} PRIVATE fdp_stereo_bags)
-endforeach()
+fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
+target_link_libraries(images_to_bag PRIVATE fdp_stereo_bags)
 foreach(tool demo_report doctor latency_probe)
   fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
   target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
 endforeach()
+
+fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
+target_link_libraries(process_bag PRIVATE fdp_stereo_bags)
 
 # The sample recording, from the pair in sample/.
 set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
