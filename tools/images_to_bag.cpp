@@ -238,8 +238,12 @@ int writeBag(Options& options) {
   View right(options, "right", right_info);
   OutputBag bag(options.output);
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    left.write(*bag, left_files[i % left_files.size()], stamps[i]);
-    right.write(*bag, right_files[i % right_files.size()], stamps[i]);
+    try {
+      left.write(*bag, left_files[i % left_files.size()], stamps[i]);
+      right.write(*bag, right_files[i % right_files.size()], stamps[i]);
+    } catch (const rosbag::BagException& error) {
+      throw std::runtime_error(options.output + ": cannot be written: " + error.what());
+    }
   }
   bag.finish();
   std::cout << options.output << ": " << stamps.size() << " pairs, stamped " << stamps.front() << " to "

@@ -351,7 +351,12 @@ int processBag(Options& options) {
   output->setCompression(rosbag::compression::LZ4);
   BagProcessor processor(options, input, *output);
   rosbag::View view(input);
-  const Counts counts = processor.run(view);
+  Counts counts;
+  try {
+    counts = processor.run(view);
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error("copying " + options.input + " to " + options.output + ": " + error.what());
+  }
   if (!counts.silence.empty()) throw std::runtime_error(options.input + ": no pairs: " + counts.silence);
   if (counts.pairs == 0) throw std::runtime_error("every pair was refused, the first: " + counts.first_problem);
   output.finish();

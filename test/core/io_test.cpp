@@ -281,7 +281,8 @@ TEST(WriteFile, LeavesNothingHalf) {
   writeFile("/dev/null", "gone");
   EXPECT_FALSE(std::filesystem::is_regular_file("/dev/null"));
   expectContains(errorOf([] { writeFile(testing::TempDir(), "x"); }), "cannot be written");
-  expectContains(errorOf([] { writeFile("/does/not/exist", "x"); }), "/does/not/exist: cannot be written");
+  expectContains(errorOf([] { writeFile("/does/not/exist", "x"); }),
+                 "/does/not/exist: cannot be written: No such file");
 }
 
 TEST(WriteImage, RefusesWhatTheFormatCannotHold) {

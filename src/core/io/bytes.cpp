@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -69,14 +70,15 @@ void writeFile(const std::string& path, std::string_view bytes) {
   const bool in_place = fs::exists(path, none) && !fs::is_regular_file(path, none);  // a pipe or a device
   const std::string final = fs::is_symlink(path, none) && !in_place ? fs::weakly_canonical(path).string() : path;
   const std::string name = in_place ? path : final + ".partial";
+  errno = 0;
   std::ofstream file(name, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  std::error_code problem;
+  std::error_code problem = file ? std::error_code() : std::error_code(errno, std::generic_category());
   if (file && !in_place) fs::rename(name, final, problem);
   if (file && !problem) return;
   if (!in_place) fs::remove(name, none);
-  fail(path, "cannot be written");
+  fail(path, "cannot be written" + (problem ? ": " + problem.message() : ""));
 }
 
 }  // namespace fdp_stereo
