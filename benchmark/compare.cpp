@@ -6,15 +6,15 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
+
+#include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
 #include "contest.hpp"
 #include "evaluation/evaluation.hpp"
 #include "fdp_stereo/io.hpp"
-#include "json_writer.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -91,27 +91,32 @@ std::vector<Row> compareOn(const std::string& folder, const Scene& scene, const 
   return rows;
 }
 
-void addRow(const Row& row, JsonWriter& json) {
-  json.open('{').add("scene", row.scene).add("method", row.score.method).add("median_ms", row.score.median_ms);
-  json.add("ratio_to_sgbm_hh", row.ratio).add("cpu_ms", row.score.median_cpu_ms);
-  json.add("cpu_ratio_to_sgbm_hh", row.cpu_ratio).open('{', "time_per_stage");
-  for (const StageTime& stage : row.score.stages) json.add(stage.stage, stage.ms);
-  json.close('}').add("peak_memory", row.score.peak_memory_mb);
-  const auto bad = [&](std::size_t i) { return row.scored ? row.errors.bad[i] : kNone; };
-  json.add("error", bad(2)).add("bad_0.125", bad(0)).add("bad_0.25", bad(1)).add("bad_0.5", bad(2));
-  json.add("bad_1", bad(3)).add("bad_2", bad(4)).add("average_px", row.scored ? row.errors.average_px : kNone);
-  json.close('}');
+nlohmann::json rowJson(const Row& row) {
+  const auto scored = [&](double value) { return row.scored ? value : kNone; };
+  nlohmann::json stages = nlohmann::json::object();
+  for (const StageTime& stage : row.score.stages) stages[stage.stage] = stage.ms;
+  return {{"scene", row.scene},
+          {"method", row.score.method},
+          {"median_ms", row.score.median_ms},
+          {"ratio_to_sgbm_hh", row.ratio},
+          {"cpu_ms", row.score.median_cpu_ms},
+          {"cpu_ratio_to_sgbm_hh", row.cpu_ratio},
+          {"time_per_stage", stages},
+          {"peak_memory", row.score.peak_memory_mb},
+          {"error", scored(row.errors.bad[2])},
+          {"bad_0.125", scored(row.errors.bad[0])},
+          {"bad_0.25", scored(row.errors.bad[1])},
+          {"bad_0.5", scored(row.errors.bad[2])},
+          {"bad_1", scored(row.errors.bad[3])},
+          {"bad_2", scored(row.errors.bad[4])},
+          {"average_px", scored(row.errors.average_px)}};
 }
 
 /// After every scene, so that an interrupted run leaves what it has.
 void writeJson(const std::string& path, const std::vector<Row>& rows) {
-  JsonWriter json;
-  json.open('[');
-  for (const Row& row : rows) addRow(row, json);
-  std::ofstream file(path);
-  file << json.close(']').text();
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
+  nlohmann::json list = nlohmann::json::array();
+  for (const Row& row : rows) list.push_back(rowJson(row));
+  writeFile(path, list.dump() + "\n");
 }
 
 void printHead() {

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 find_package(catkin REQUIRED COMPONENTS
-  diagnostic_updater dynamic_reconfigure geometry_msgs image_transport message_filters nodelet pluginlib rosbag roscpp sensor_msgs
+  diagnostic_updater dynamic_reconfigure geometry_msgs image_geometry image_transport message_filters nodelet pluginlib rosbag roscpp sensor_msgs
   stereo_msgs tf2 tf2_ros)
 generate_dynamic_reconfigure_options(cfg/Disparity.cfg)
 catkin_package(

@@ -35,8 +35,16 @@ set_target_properties(disparity_node PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
 add_dependencies(disparity_node fdp_stereo_nodelet)
 
+add_library(fdp_stereo_bags STATIC
+  tools/bag_pairs.cpp
+  tools/bag_topics.cpp
+  tools/calibration_file.cpp
+  tools/compressed_image.cpp
+  tools/rectifier.cpp
+)
+target_link_libraries(fdp_stereo_bags PUBLIC fdp_stereo_nodelet fdp_stereo_tool_support PRIVATE yaml-cpp)
 fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
-target_link_libraries(images_to_bag PRIVATE fdp_stereo_nodelet yaml-cpp)
+target_link_libraries(images_to_bag PRIVATE fdp_stereo_bags)
 foreach(tool demo_report doctor latency_probe)
   fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
   # The version is that of package.xml, as catkin has read it.
@@ -45,7 +53,7 @@ foreach(tool demo_report doctor latency_probe)
 endforeach()
 
 fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
-target_link_libraries(process_bag PRIVATE fdp_stereo_nodelet)
+target_link_libraries(process_bag PRIVATE fdp_stereo_bags)
 
 # The sample recording, from the pair in sample/.
 set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
@@ -53,7 +61,7 @@ set(_sample_bag ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sampl
 add_custom_command(OUTPUT ${_sample_bag}
   COMMAND ${CMAKE_COMMAND} -E make_directory ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample
   COMMAND images_to_bag --left ${_sample}/left.png --right ${_sample}/right.png --left-info ${_sample}/left.yaml
-          --right-info ${_sample}/right.yaml --rate 2 --repeat 16 --output ${_sample_bag}
+          --right-info ${_sample}/right.yaml --rate 2 --repeat 16 --output ${_sample_bag} --overwrite
   DEPENDS images_to_bag ${_sample}/left.png ${_sample}/right.png ${_sample}/left.yaml ${_sample}/right.yaml)
 add_custom_target(sample_bag ALL DEPENDS ${_sample_bag})
 install(FILES ${_sample_bag} sample/README.md DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/sample)

@@ -7,9 +7,10 @@ target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/sr
 target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_core)
 
 # Command-line tools. With catkin they land in devel/lib/fdp_stereo, where rosrun finds them.
-add_library(fdp_stereo_tool_support STATIC tools/command_line.cpp tools/process_memory.cpp)
+add_library(fdp_stereo_tool_support STATIC tools/command_line.cpp tools/output_files.cpp tools/process_memory.cpp)
+target_compile_definitions(fdp_stereo_tool_support PRIVATE FDP_STEREO_VERSION="${PROJECT_VERSION}")
 target_include_directories(fdp_stereo_tool_support PUBLIC ${PROJECT_SOURCE_DIR}/tools)
-target_link_libraries(fdp_stereo_tool_support PUBLIC fdp_stereo_evaluation CLI11::CLI11)
+target_link_libraries(fdp_stereo_tool_support PUBLIC fdp_stereo_evaluation CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 function(fdp_stereo_add_tool name)
   add_executable(${name} ${ARGN})
@@ -40,6 +41,7 @@ add_library(fdp_stereo_evaluate STATIC
   src/evaluation/progress.cpp
   src/evaluation/report.cpp
   src/evaluation/result.cpp
+  src/evaluation/result_table.cpp
   src/evaluation/runner.cpp
   ${PROJECT_BINARY_DIR}/generated/report_template.cpp
 )

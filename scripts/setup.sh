@@ -10,7 +10,7 @@ set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build git dpkg-dev file
-  libopencv-dev libeigen3-dev libyaml-cpp-dev libcli11-dev
+  libopencv-dev libeigen3-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   catkin libroscpp-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools libimage-transport-dev libcv-bridge-dev
   libimage-geometry-dev libstereo-msgs-dev libsensor-msgs-dev libmessage-filters-dev libtf2-ros-dev
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure libdiagnostic-updater-dev librosbag-dev

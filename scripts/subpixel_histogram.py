@@ -44,7 +44,7 @@ def num_disparities(scene):
 
 def match(program, scene, settings, folder):
     out = os.path.join(folder, "disparity.pfm")
-    command = [program, os.path.join(scene, "im0.png"), os.path.join(scene, "im1.png"), "-o", out,
+    command = [program, os.path.join(scene, "im0.png"), os.path.join(scene, "im1.png"), "-o", out, "--overwrite",
                "--num-disparities", num_disparities(scene)]
     for setting in settings:
         command += ["--set", setting]

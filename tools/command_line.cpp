@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <new>
+#include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <sstream>
 
@@ -19,6 +20,9 @@ int complain(const CLI::App& app, std::string message, int code) {
   std::cerr << app.get_name() << ": " << message << (code == kBadUsage ? " (see --help)" : "") << std::endl;
   return code;
 }
+
+constexpr char kOutOfMemory[] =
+    "out of memory; search fewer disparities, use smaller images (pipeline.scale), or give the program more";
 
 std::string rangeText(const ParamRef& ref) {
   if (const auto* choice = std::get_if<EnumRef>(&ref.value)) {
@@ -51,6 +55,10 @@ void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
         throw CLI::Success();
       },
       "Print every parameter that --set takes and exit");
+}
+
+void addOverwriteOption(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite, "Replace outputs that exist; an input is never replaced");
 }
 
 void addSeedSimulationOptions(CLI::App& app, SeedSimulation& simulation) {
@@ -92,13 +100,19 @@ std::string describeParams() {
   return text.str();
 }
 
+std::string versionText(const std::string& tool) { return tool + " (fdp_stereo) " + FDP_STEREO_VERSION; }
+
 int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  app.set_version_flag("--version", versionText(app.get_name()), "Print the version and exit");
   try {
     app.parse(argc, argv);
     return run();
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();
+    return 0;
+  } catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << '\n';
     return 0;
   } catch (const CLI::Success&) {
     return 0;
@@ -107,7 +121,9 @@ int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& ru
   } catch (const UsageError& error) {
     return complain(app, error.what(), kBadUsage);
   } catch (const std::bad_alloc&) {
-    return complain(app, "out of memory", kBadInput);
+    return complain(app, kOutOfMemory, kBadInput);
+  } catch (const cv::Exception& error) {
+    return complain(app, error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what(), kBadInput);
   } catch (const std::exception& error) {
     return complain(app, error.what(), kBadInput);
   }

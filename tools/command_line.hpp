@@ -32,6 +32,9 @@ struct PipelineOptions {
 /// Adds --min-disparity, --num-disparities, --threads, --set, --fill, and --list-parameters, which prints and exits.
 void addPipelineOptions(CLI::App& app, PipelineOptions& options);
 
+/// Adds --overwrite.
+void addOverwriteOption(CLI::App& app, bool& overwrite);
+
 /// Adds --seed-share, --seed-noise and --seed-outliers.
 void addSeedSimulationOptions(CLI::App& app, SeedSimulation& simulation);
 
@@ -41,7 +44,11 @@ PipelineParams resolveParams(const std::string& preset, const PipelineOptions& o
 /// Every parameter with its default, range, unit and text, one a line.
 std::string describeParams();
 
-/// Parses the command line and runs the tool: 0; 1 and one line on stderr for bad input; 2 and one line for bad usage.
+/// "NAME (fdp_stereo) VERSION", as --version prints it.
+std::string versionText(const std::string& tool);
+
+/// Parses the command line and runs the tool; adds --version. Returns 0; 1 and one line on stderr for bad input; 2 and
+/// one line for bad usage.
 int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
 
 }  // namespace fdp_stereo

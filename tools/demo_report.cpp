@@ -17,6 +17,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <opencv2/imgproc.hpp>
 
+#include "command_line.hpp"
 #include "conversions.hpp"
 #include "fdp_stereo/io.hpp"
 
@@ -133,6 +134,10 @@ void waitForEnd(const Report& report, double wait_s, double idle_s) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string(argv[1]) == "--version") {
+    std::cout << fdp_stereo::versionText("demo_report") << '\n';
+    return 0;
+  }
   ros::init(argc, argv, "demo_report");
   ros::NodeHandle private_node("~");
   const std::filesystem::path output = private_node.param<std::string>("output", ".");

@@ -12,6 +12,7 @@
 #include "evaluation/report.hpp"
 #include "evaluation/result.hpp"
 #include "evaluation/runner.hpp"
+#include "output_files.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -25,6 +26,7 @@ struct Options {
   bool peers = false;
   bool merge = false;
   std::string csv;
+  bool overwrite = false;
   std::string shard;
   RunOptions run;
   PipelineOptions pipeline;
@@ -47,10 +49,11 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
   app.add_option("--csv", options.csv, "Write the table as CSV");
   app.add_option("--report", options.run.folder,
-                 "Write pictures, table and index.html here; goes on where an earlier run stopped");
+                 "Write pictures, table and index.html here; keeps what is there and goes on where a run stopped");
   app.add_option("--jobs", options.run.jobs, "Scenes at once; above 1 times are disturbed, CPU and memory unknown")
       ->check(CLI::Range(1, 256));
   app.add_option("--shard", options.shard, "Do only the i-th of n parts of the scenes, 'i/n'; needs --report");
+  addOverwriteOption(app, options.overwrite);
   app.add_flag("--merge", options.merge, "Run nothing, put the parts in --report together");
   app.footer(
       "Exit codes: 0 done, 1 a scene failed (the others are done all the same), 2 the command line is at fault.");
@@ -108,9 +111,21 @@ std::string conditionsOf(const Options& options) {
   return text + (options.run.jobs > 1 ? " Several scenes ran at once: times are disturbed." : "");
 }
 
+/// The page shows all rows of the folder, of whichever run they are.
+void writePage(const Options& options, std::size_t own_rows) {
+  const std::string& folder = options.run.folder;
+  const std::vector<ResultRow> rows = readCsv((fs::path(folder) / shardTableName(1, 1)).string());
+  const bool others = rowsToShow(rows).size() > own_rows;
+  writeReport(folder, rows,
+              {conditionsOf(options) + (others ? " Rows of earlier runs are kept as they were measured." : ""),
+               options.command});
+}
+
 int merge(const Options& options) {
   const std::string& folder = options.run.folder;
   if (folder.empty()) throw UsageError("--merge needs --report, the folder with the parts");
+  checkOutputs({options.csv}, {}, options.overwrite);
+  checkReport(folder);
   const std::vector<ResultRow> rows = mergeShards(folder);
   writeCsv((fs::path(folder) / shardTableName(1, 1)).string(), rows);
   writeReport(folder, rows, {"Put together from the tables of several runs.", options.command});
@@ -123,13 +138,13 @@ int evaluate(Options& options) {
   if (options.merge) return merge(options);
   if (options.scenes.empty()) throw UsageError("SCENES is required");
   parseShard(options.shard, options.run);
-  const RunOutcome outcome = runMethods(options.scenes, chooseMethods(options), options.run);
+  const std::vector<Method> methods = chooseMethods(options);
+  checkOutputs({options.csv}, options.presets, options.overwrite);
+  if (!options.run.folder.empty()) checkReport(options.run.folder);
+  const RunOutcome outcome = runMethods(options.scenes, methods, options.run);
   if (!outcome.rows.empty()) std::cout << tableText(outcome.rows);
   if (!options.csv.empty()) writeCsv(options.csv, outcome.rows);
-  const bool whole = options.run.shard_count == 1;
-  if (!options.run.folder.empty() && whole) {
-    writeReport(options.run.folder, outcome.rows, {conditionsOf(options), options.command});
-  }
+  if (!options.run.folder.empty() && options.run.shard_count == 1) writePage(options, outcome.rows.size());
   return reportFailures(outcome.failures);
 }
 

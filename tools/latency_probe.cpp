@@ -10,6 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -23,6 +24,7 @@
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "command_line.hpp"
 #include "conversions.hpp"
 #include "fdp_stereo/pipeline.hpp"
 
@@ -230,6 +232,10 @@ void measureStream(Probe& probe, double rate_hz, int edits, double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string(argv[1]) == "--version") {
+    std::cout << fdp_stereo::versionText("latency_probe") << '\n';
+    return 0;
+  }
   ros::init(argc, argv, "latency_probe");
   ros::NodeHandle private_node("~");
   const double rate_hz = std::clamp(private_node.param("rate", 30.0), 0.1, 1000.0);

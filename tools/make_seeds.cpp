@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // make_seeds TRUTH --output seeds.txt: what another sensor might have seen of a scene with known disparity.
-#include <fstream>
+#include <locale>
+#include <sstream>
 #include <string>
 
 #include "command_line.hpp"
 #include "evaluation/evaluation.hpp"
 #include "fdp_stereo/io.hpp"
+#include "output_files.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -17,6 +19,7 @@ struct Options {
   std::string output;
   int num_disparities = 64;
   double png_scale = 256.0;
+  bool overwrite = false;
   SeedSimulation simulation;
 };
 
@@ -31,21 +34,23 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   addSeedSimulationOptions(app, options.simulation);
+  addOverwriteOption(app, options.overwrite);
   app.add_option("--random-seed", options.simulation.random_seed, "The same number gives the same file")
       ->capture_default_str();
 }
 
 int makeSeeds(const Options& options) {
+  checkOutputs({options.output}, {options.truth}, options.overwrite);
   const cv::Mat truth = readDisparity(options.truth, options.png_scale);
   const SeedSimulation& simulation = options.simulation;
-  std::ofstream file(options.output);
-  file << "# x y d of " << options.truth << ", share " << simulation.share << ", noise " << simulation.noise_px
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << "# x y d of " << options.truth << ", share " << simulation.share << ", noise " << simulation.noise_px
        << " px, outliers " << simulation.outliers << ", random seed " << simulation.random_seed << '\n';
   for (const Seed& seed : simulateSeeds(truth, {0, options.num_disparities}, simulation)) {
-    file << seed.x << ' ' << seed.y << ' ' << seed.d << '\n';
+    text << seed.x << ' ' << seed.y << ' ' << seed.d << '\n';
   }
-  file.close();
-  if (!file) throw std::runtime_error(options.output + ": cannot be written");
+  writeFile(options.output, text.str());
   return 0;
 }
 

@@ -4,15 +4,16 @@
 // match LEFT RIGHT --output disparity.pfm: the disparity of one rectified pair.
 #include <unistd.h>
 
-#include <chrono>
-#include <fstream>
+#include <algorithm>
 #include <iostream>
+
+#include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/pipeline.hpp"
-#include "json_writer.hpp"
+#include "output_files.hpp"
 #include "process_memory.hpp"
 
 namespace fdp_stereo {
@@ -30,6 +31,7 @@ struct Options {
   std::string seeds;
   std::string draw_seeds;
   bool log_energy = false;
+  bool overwrite = false;
   PipelineOptions pipeline;
 };
 
@@ -50,6 +52,7 @@ void addOptions(CLI::App& app, Options& options) {
                  "Draw the row offset between the views and what it leaves of each match");
   app.add_option("--timings", options.timings, "Write times, memory and what the stages found as JSON");
   app.add_flag("--log-energy", options.log_energy, "Print the energy after each iteration of local_expansion");
+  addOverwriteOption(app, options.overwrite);
   std::string names;
   for (const std::string& name : presetNames()) names += " " + name;
   app.footer("Presets:" + names +
@@ -67,38 +70,39 @@ double totalMs(const PipelineResult& result) {
 }
 
 std::string timingsJson(const PipelineResult& result, const PipelineParams& params) {
-  JsonWriter json;
-  json.open('{').add("width", result.disparity.cols).add("height", result.disparity.rows);
-  json.add("min_disparity", params.search.min).add("num_disparities", params.search.count);
-  json.open('[', "stages");
-  for (const StageTime& time : result.times) json.open('{').add("stage", time.stage).add("ms", time.ms).close('}');
-  json.close(']').add("total_ms", totalMs(result)).add("peak_memory_mb", peakMemoryMb());
-  json.add("valid_share", validShare(result.disparity));
-  json.add("matches", static_cast<double>(result.matches.size()))
-      .add("seeds", static_cast<double>(result.seeds.size()));
-  json.add("rejected_seeds", static_cast<double>(result.rejected_seeds.size()));
-  json.add("quasi_dense_seeds", static_cast<double>(result.quasi_dense_seeds.size()));
-  json.add("propagated_share", result.propagated_share).add("feature_note", result.feature_note);
+  using Json = nlohmann::json;
+  Json stages = Json::array();
+  for (const StageTime& time : result.times) stages.push_back({{"stage", time.stage}, {"ms", time.ms}});
   const RowAlignment& rows = result.row_alignment;
-  json.open('{', "row_alignment").add("model", rows.model.name()).add("matches_used", rows.matches_used);
-  json.add("rms_before_px", rows.rms_before_px).add("rms_after_px", rows.rms_after_px);
-  json.add("offset_rms_px", rows.offset_rms_px).add("sigma_px", rows.sigma_px).add("note", rows.note);
-  json.add("warning", rows.warning).close('}');
-  json.open('[', "energies");
-  for (const double energy : result.energies) json.add("", energy);
-  return json.close(']').close('}').text();
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
+  const Json json = {{"width", result.disparity.cols},
+                     {"height", result.disparity.rows},
+                     {"min_disparity", params.search.min},
+                     {"num_disparities", params.search.count},
+                     {"stages", stages},
+                     {"total_ms", totalMs(result)},
+                     {"peak_memory_mb", peakMemoryMb()},
+                     {"valid_share", validShare(result.disparity)},
+                     {"matches", result.matches.size()},
+                     {"seeds", result.seeds.size()},
+                     {"rejected_seeds", result.rejected_seeds.size()},
+                     {"quasi_dense_seeds", result.quasi_dense_seeds.size()},
+                     {"propagated_share", result.propagated_share},
+                     {"feature_note", result.feature_note},
+                     {"row_alignment",
+                      {{"model", rows.model.name()},
+                       {"matches_used", rows.matches_used},
+                       {"rms_before_px", rows.rms_before_px},
+                       {"rms_after_px", rows.rms_after_px},
+                       {"offset_rms_px", rows.offset_rms_px},
+                       {"sigma_px", rows.sigma_px},
+                       {"note", rows.note},
+                       {"warning", rows.warning}}},
+                     {"energies", result.energies}};
+  return json.dump() + "\n";
 }
 
 void writeConfidence(const std::string& path, const cv::Mat& confidence) {
-  const bool pfm = path.size() > 4 && path.compare(path.size() - 4, 4, ".pfm") == 0;
-  pfm ? writeDisparity(path, confidence) : writeImage(path, confidenceToGrey(confidence));
+  isImageName(path) ? writeImage(path, confidenceToGrey(confidence)) : writeDisparity(path, confidence);
 }
 
 void writeOutputs(const Options& options, const PipelineParams& params, const cv::Mat& left,
@@ -113,7 +117,7 @@ void writeOutputs(const Options& options, const PipelineParams& params, const cv
     const cv::Mat shown = prepareImages(left, left).left;
     writeImage(options.draw_seeds, drawSeeds(shown, allSeeds(result), params.search));
   }
-  if (!options.timings.empty()) writeText(options.timings, timingsJson(result, params));
+  if (!options.timings.empty()) writeFile(options.timings, timingsJson(result, params));
 }
 
 void printSummary(const Options& options, const PipelineParams& params, const PipelineResult& result) {
@@ -139,14 +143,63 @@ void showProgress(int done, int all, double energy) {
   std::cerr << "\r\x1b[Koptimising: step " << done << " of " << all << ", energy " << energy << std::flush;
 }
 
+/// What would be found out after the work only.
+void checkFiles(const Options& options) {
+  const auto require = [](bool holds, const std::string& path, const char* names) {
+    if (!path.empty() && !holds) throw std::runtime_error(path + ": must be " + names);
+  };
+  require(isDisparityName(options.output), options.output, ".pfm or .png");
+  require(isDisparityName(options.confidence) || isImageName(options.confidence), options.confidence,
+          ".pfm or a picture, as .png");
+  for (const std::string& picture : {options.color, options.row_alignment, options.draw_seeds}) {
+    require(isImageName(picture), picture, ".png, .jpg, .tiff, .bmp, .webp or .ppm");
+  }
+  checkOutputs(
+      {options.output, options.color, options.confidence, options.row_alignment, options.draw_seeds, options.timings},
+      {options.left, options.right, options.seeds, options.preset}, options.overwrite);
+}
+
+/// A range with which no pixel of the image has a match is a mistake, not an empty scene.
+void checkRange(DisparityRange range, int width) {
+  if (range.min < width && range.max() > -width) return;
+  throw std::runtime_error("disparities " + std::to_string(range.min) + " to " + std::to_string(range.max()) +
+                           " px: no pixel of an image " + std::to_string(width) +
+                           " px wide can have one; set --min-disparity near 0");
+}
+
+/// Seeds of another picture, or of another size of it.
+void warnOfSeedsOutside(const Seeds& seeds, cv::Size size) {
+  const auto outside = std::count_if(seeds.begin(), seeds.end(), [&](const Seed& seed) {
+    return !cv::Rect(cv::Point(), size).contains({cvRound(seed.x), cvRound(seed.y)});
+  });
+  if (outside == 0) return;
+  std::cout << "warning: " << outside << " of " << seeds.size() << " seeds are outside the image, " << size.width
+            << " x " << size.height << " px, and not used\n";
+}
+
+/// Exchanged views have next to no match: a second look, the other way round, tells them from a hard scene.
+bool looksSwapped(const cv::Mat& left, const cv::Mat& right, const PipelineParams& params,
+                  const PipelineResult& result) {
+  constexpr double kFewValid = 0.25;
+  constexpr std::size_t kFewMatches = 10;
+  if (result.matches.size() >= kFewMatches && validShare(result.disparity) >= kFewValid) return false;
+  PipelineParams quick = loadPreset("fast");
+  quick.search = params.search;
+  quick.threads = params.threads;
+  return Pipeline(quick).run(right, left).matches.size() > 4 * std::max(kFewMatches / 2, result.matches.size());
+}
+
 int match(const Options& options) {
   const PipelineParams params = resolveParams(options.preset, options.pipeline);
   if (options.log_energy && params.optimizer != OptimizerType::kLocalExpansion) {
     throw UsageError("--log-energy needs optimizer.type=local_expansion, the others have no energy");
   }
+  checkFiles(options);
   const cv::Mat left = readImage(options.left);
   const cv::Mat right = readImage(options.right);
-  const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds);
+  checkRange(params.search, left.cols);
+  const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds, left.size());
+  warnOfSeedsOutside(seeds, left.size());
   Pipeline pipeline(params);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) pipeline.setProgress(showProgress);
@@ -154,6 +207,9 @@ int match(const Options& options) {
   if (terminal) std::cerr << "\r\x1b[K" << std::flush;
   writeOutputs(options, params, left, result);
   printSummary(options, params, result);
+  if (looksSwapped(left, right, params, result)) {
+    std::cout << "warning: hardly a match is found, but many the other way round: exchange LEFT and RIGHT\n";
+  }
   return 0;
 }
 

@@ -1,55 +1,57 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// process_bag IN.bag OUT.bag: the nodelet's outputs for every rectified pair of a recording, without a roscore.
+// process_bag IN.bag OUT.bag: the nodelet's outputs for every pair of a recording, without a roscore.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <set>
+#include <new>
 #include <stdexcept>
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <unistd.h>
-#include <opencv2/imgcodecs.hpp>
+#include <boost/make_shared.hpp>
 
+#include "bag_pairs.hpp"
+#include "bag_topics.hpp"
+#include "calibration_file.hpp"
 #include "command_line.hpp"
-#include "conversions.hpp"
+#include "compressed_image.hpp"
 #include "frame_processor.hpp"
+#include "output_bag.hpp"
+#include "rectifier.hpp"
 
 namespace fdp_stereo {
 namespace {
 
 namespace fs = std::filesystem;
+using sensor_msgs::CameraInfo;
+using sensor_msgs::CameraInfoConstPtr;
 
-constexpr std::size_t kMaxWaiting = 200;  // messages of one topic that wait for their partners
-constexpr int kMaxNamedTopics = 20;
+constexpr char kImage[] = "sensor_msgs/Image";
+constexpr char kCompressedImage[] = "sensor_msgs/CompressedImage";
+constexpr char kCameraInfo[] = "sensor_msgs/CameraInfo";
 
 struct Options {
   std::string input;
   std::string output;
   std::string preset = kDefaultPreset;
   std::string stereo_namespace = "/stereo";
-  std::string image_name = "image_rect";
+  std::string image_name;
   StereoTopics topics{"", "", "", ""};
+  std::string left_calibration;
+  std::string right_calibration;
+  bool rectify = false;
+  bool rectified = false;
   bool overwrite = false;
+  SyncOptions sync;
   PipelineOptions pipeline;
 };
-
-StereoTopics resolveTopics(const Options& options) {
-  const auto topic = [&](const std::string& given, const char* side, const std::string& name) {
-    return given.empty() ? options.stereo_namespace + "/" + side + "/" + name : given;
-  };
-  return {topic(options.topics.left_image, "left", options.image_name),
-          topic(options.topics.right_image, "right", options.image_name),
-          topic(options.topics.left_info, "left", "camera_info"),
-          topic(options.topics.right_info, "right", "camera_info")};
-}
 
 /// Opens a recording; says what to do where it was not closed.
 void openInput(rosbag::Bag& bag, const std::string& path) {
@@ -63,83 +65,75 @@ void openInput(rosbag::Bag& bag, const std::string& path) {
   }
 }
 
-/// Throws where a topic is missing, and lists what there is.
-void requireTopics(rosbag::View& view, const StereoTopics& topics, const std::string& path) {
-  std::map<std::string, std::string> types;
-  for (const rosbag::ConnectionInfo* connection : view.getConnections())
-    types[connection->topic] = connection->datatype;
-  for (const std::string& topic : {topics.left_image, topics.right_image, topics.left_info, topics.right_info}) {
-    if (types.count(topic) > 0 || types.count(topic + "/compressed") > 0) continue;
-    std::string message = path + ": has no messages on " + topic + "; there are";
-    int named = 0;
-    for (const auto& [name, type] : types) {
-      if (named++ < kMaxNamedTopics) message += " " + name + " (" + type + ")";
-    }
-    throw std::runtime_error(message);
+/// The four topics as the recording spells them: raw images where both views have them, else compressed ones where
+/// both have those. Throws where a topic is missing, and lists what there is.
+StereoTopics findTopics(const Options& options, const BagTopics& bag) {
+  const auto name = [&](const std::string& given, const std::string& below) {
+    return given.empty() ? options.stereo_namespace + below : given;
+  };
+  const auto require = [&](const std::string& topic, const std::string& found) {
+    if (!found.empty()) return found;
+    throw std::runtime_error(options.input + ": has no messages on " + normalName(topic) + "; there are" + bag.list());
+  };
+  const std::string image = !options.image_name.empty() ? options.image_name
+                            : options.rectify           ? "image_raw"
+                                                        : "image_rect";
+  const std::string left = name(options.topics.left_image, "/left/" + image);
+  const std::string right = name(options.topics.right_image, "/right/" + image);
+  const auto compressed = [&](const std::string& topic) {
+    const std::string found = bag.find(topic + "/compressed", kCompressedImage);
+    return found.empty() ? bag.find(topic, kCompressedImage) : found;
+  };
+  StereoTopics topics{bag.find(left, kImage), bag.find(right, kImage), "", ""};
+  if (topics.left_image.empty() || topics.right_image.empty()) {
+    const StereoTopics packed{compressed(left), compressed(right), "", ""};
+    const bool both = !packed.left_image.empty() && !packed.right_image.empty();
+    if (both || topics.left_image.empty()) topics.left_image = packed.left_image;
+    if (both || topics.right_image.empty()) topics.right_image = packed.right_image;
   }
+  require(left, topics.left_image);
+  require(right, topics.right_image);
+  const std::string left_info = name(options.topics.left_info, "/left/camera_info");
+  const std::string right_info = name(options.topics.right_info, "/right/camera_info");
+  topics.left_info = options.left_calibration.empty() ? require(left_info, bag.find(left_info, kCameraInfo))
+                                                      : options.left_calibration;
+  topics.right_info = options.right_calibration.empty() ? require(right_info, bag.find(right_info, kCameraInfo))
+                                                        : options.right_calibration;
+  return topics;
 }
 
-/// An Image, or a CompressedImage decoded; null for a message of another type.
-sensor_msgs::ImageConstPtr imageOf(const rosbag::MessageInstance& message) {
-  if (const auto image = message.instantiate<sensor_msgs::Image>()) return image;
-  const auto compressed = message.instantiate<sensor_msgs::CompressedImage>();
-  if (!compressed) return nullptr;
-  cv::Mat decoded;
-  if (!compressed->data.empty()) decoded = cv::imdecode(compressed->data, cv::IMREAD_UNCHANGED);
-  if (decoded.empty()) throw std::invalid_argument(message.getTopic() + ": not readable as a compressed image");
-  return toImageMessage(decoded, compressed->header);
+/// image_rect, image_rect_color and the like, compressed or not.
+bool isRectifiedName(std::string topic) {
+  const std::size_t transport = topic.rfind("/compressed");
+  if (transport != std::string::npos) topic.resize(transport);
+  const std::string name = topic.substr(topic.rfind('/') + 1);
+  return name.find("rect") != std::string::npos && name.find("unrect") == std::string::npos;
 }
 
-/// Puts images and calibrations of one stamp together.
-class PairCollector {
+/// The calibration of one view where it does not come with every image: from a file, or sent once or now and then.
+class StandingCalibration {
  public:
-  explicit PairCollector(StereoTopics topics) : topics_(std::move(topics)) {}
-
-  /// True and `frame` filled when the message completes a pair.
-  bool add(const rosbag::MessageInstance& message, StereoFrame& frame) {
-    const std::string& topic = message.getTopic();
-    const auto is = [&](const std::string& name) { return topic == name || topic == name + "/compressed"; };
-    if (is(topics_.left_image)) return addImage(message, true, frame);
-    if (is(topics_.right_image)) return addImage(message, false, frame);
-    if (topic == topics_.left_info) return addInfo(message, true, frame);
-    if (topic == topics_.right_info) return addInfo(message, false, frame);
-    return false;
+  StandingCalibration(const rosbag::Bag& bag, const BagTopics& counts, const std::string& image_topic,
+                      const std::string& info_topic, const std::string& file) {
+    if (!file.empty()) {
+      info_ = boost::make_shared<CameraInfo>(readCalibration(file));
+    } else if (counts.count(image_topic) > 1 && 2 * counts.count(info_topic) <= counts.count(image_topic)) {
+      rosbag::View infos(bag, rosbag::TopicQuery(info_topic));
+      info_ = infos.begin()->instantiate<CameraInfo>();
+    }
   }
-  /// Images that found no partner.
-  std::size_t unmatched() const { return unmatched_ + waiting_.size(); }
+  bool inForce() const { return info_ != nullptr; }
+  void replace(const CameraInfoConstPtr& info) { info_ = info; }
+  /// The calibration as if it had come with an image.
+  CameraInfoConstPtr at(const std_msgs::Header& header) const {
+    auto info = boost::make_shared<CameraInfo>(*info_);
+    info->header.stamp = header.stamp;
+    if (info->header.frame_id.empty()) info->header.frame_id = header.frame_id;
+    return info;
+  }
 
  private:
-  bool addImage(const rosbag::MessageInstance& message, bool left, StereoFrame& frame) {
-    const auto image = imageOf(message);
-    if (!image) return false;
-    (left ? waiting_[image->header.stamp].left : waiting_[image->header.stamp].right) = image;
-    return complete(image->header.stamp, frame);
-  }
-
-  bool addInfo(const rosbag::MessageInstance& message, bool left, StereoFrame& frame) {
-    const auto info = message.instantiate<sensor_msgs::CameraInfo>();
-    if (!info) return false;
-    (left ? waiting_[info->header.stamp].left_info : waiting_[info->header.stamp].right_info) = info;
-    return complete(info->header.stamp, frame);
-  }
-
-  bool complete(const ros::Time& stamp, StereoFrame& frame) {
-    const auto found = waiting_.find(stamp);
-    const StereoFrame& candidate = found->second;
-    const bool whole = candidate.left && candidate.right && candidate.left_info && candidate.right_info;
-    if (whole) {
-      frame = candidate;
-      waiting_.erase(found);
-    } else if (waiting_.size() > kMaxWaiting) {
-      ++unmatched_;
-      waiting_.erase(waiting_.begin());
-    }
-    return whole;
-  }
-
-  StereoTopics topics_;
-  std::map<ros::Time, StereoFrame> waiting_;
-  std::size_t unmatched_ = 0;
+  CameraInfoConstPtr info_;
 };
 
 /// Frames, rate and time left; a line that is rewritten on a terminal, silent elsewhere.
@@ -169,100 +163,234 @@ class BagProgress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Refuses images that still have to be rectified: their disparity would be silently wrong.
-void requireRectified(const sensor_msgs::CameraInfo& info, const std::string& image_topic) {
-  const auto distorted = std::any_of(info.D.begin(), info.D.end(), [](double d) { return std::abs(d) > 1e-9; });
-  const std::string raw = "image_raw";
-  const bool named_raw =
-      image_topic.size() >= raw.size() && image_topic.compare(image_topic.size() - raw.size(), raw.size(), raw) == 0;
-  if (distorted && named_raw) {
-    throw std::runtime_error(image_topic +
-                             ": its calibration has distortion, rectify the recording first (image_proc)");
-  }
-}
-
+/// What is told at the end.
 struct Counts {
   std::size_t pairs = 0;
   std::size_t refused = 0;
   std::size_t unmatched = 0;
+  std::size_t replaced = 0;
   std::string first_problem;
+  std::string silence;  ///< why there are no pairs
+  std::map<std::string, std::size_t> warnings;
 };
 
-void writeOutputs(rosbag::Bag& bag, const std::string& base, const ros::Time& time, const FrameOutput& output) {
-  bag.write(base + "/disparity", time, output.disparity);
-  bag.write(base + "/depth", time, output.depth);
-  bag.write(base + "/depth/camera_info", time, output.depth_info);
-  bag.write(base + "/confidence", time, output.confidence);
-}
-
-Counts processMessages(const Options& options, const NodeSettings& settings, rosbag::View& view, rosbag::Bag& output) {
-  const StereoTopics topics = resolveTopics(options);
-  PairCollector pairs(topics);
-  FrameProcessor processor(topics);
-  BagProgress progress(view.size());
-  Counts counts;
-  std::size_t done = 0;
-  for (const rosbag::MessageInstance& message : view) {
-    ++done;
-    output.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
-    StereoFrame frame;
-    try {
-      if (!pairs.add(message, frame)) continue;
-      if (counts.pairs == 0) requireRectified(*frame.left_info, topics.left_image);
-      writeOutputs(output, options.stereo_namespace, message.getTime(),
-                   processor.process(frame, settings, {true, true, true}));
-      ++counts.pairs;
-    } catch (const std::invalid_argument& error) {
-      if (counts.refused++ == 0) counts.first_problem = error.what();
+class BagProcessor {
+ public:
+  BagProcessor(const Options& options, const rosbag::Bag& input, rosbag::Bag& output)
+      : options_(options),
+        counts_of_topics_(input),
+        topics_(findTopics(options, counts_of_topics_)),
+        left_info_(input, counts_of_topics_, topics_.left_image, topics_.left_info, options.left_calibration),
+        right_info_(input, counts_of_topics_, topics_.right_image, topics_.right_info, options.right_calibration),
+        output_(output),
+        pairs_(options.sync),
+        processor_(topics_) {
+    settings_.pipeline = resolveParams(options.preset, options.pipeline);
+    for (const char* name : {"/disparity", "/depth", "/depth/image_rect", "/depth/camera_info", "/confidence"}) {
+      results_.push_back(options.stereo_namespace + name);
     }
-    progress.frame(done);
   }
-  counts.unmatched = pairs.unmatched();
-  return counts;
-}
 
-int report(const Options& options, const Counts& counts) {
+  Counts run(rosbag::View& view) {
+    BagProgress progress(view.size());
+    std::size_t done = 0;
+    for (const rosbag::MessageInstance& message : view) {
+      ++done;
+      if (std::find(results_.begin(), results_.end(), normalName(message.getTopic())) != results_.end()) {
+        ++counts_.replaced;
+        continue;
+      }
+      output_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+      guarded([&] { add(message); });
+      processPairs(message.getTime(), progress, done);
+    }
+    pairs_.finish();
+    processPairs(view.getEndTime(), progress, done);
+    counts_.unmatched = pairs_.imagesWithoutPartner();
+    if (counts_.pairs + counts_.refused == 0) counts_.silence = pairs_.silence(topics_);
+    return counts_;
+  }
+
+ private:
+  /// What is wrong with one message or pair must not end the run.
+  template <typename Call>
+  void guarded(Call&& call) {
+    std::string problem;
+    try {
+      return call();
+    } catch (const std::bad_alloc&) {
+      problem = "out of memory";
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    if (counts_.refused++ == 0) counts_.first_problem = problem;
+  }
+
+  void add(const rosbag::MessageInstance& message) {
+    const std::string& topic = message.getTopic();
+    if (topic == topics_.left_image) addImage(message, kLeftImage);
+    if (topic == topics_.right_image) addImage(message, kRightImage);
+    if (topic == topics_.left_info) addInfo(message, kLeftInfo, left_info_);
+    if (topic == topics_.right_info) addInfo(message, kRightInfo, right_info_);
+  }
+
+  void addImage(const rosbag::MessageInstance& message, Input side) {
+    std_msgs::Header header;
+    if (const auto image = message.instantiate<sensor_msgs::Image>()) {
+      header = image->header;
+    } else if (const auto compressed = message.instantiate<sensor_msgs::CompressedImage>()) {
+      header = compressed->header;
+    } else {
+      throw std::runtime_error(message.getTopic() + ": a message is of another type than its topic");
+    }
+    const StandingCalibration& standing = side == kLeftImage ? left_info_ : right_info_;
+    if (standing.inForce()) pairs_.addInfo(side == kLeftImage ? kLeftInfo : kRightInfo, standing.at(header));
+    pairs_.addImage(side, boost::make_shared<const BagImage>(
+                              BagImage{header.stamp, boost::make_shared<const rosbag::MessageInstance>(message)}));
+  }
+
+  void addInfo(const rosbag::MessageInstance& message, Input side, StandingCalibration& standing) {
+    const auto info = message.instantiate<CameraInfo>();
+    if (!info) throw std::runtime_error(message.getTopic() + ": a message is of another type than its topic");
+    if (standing.inForce()) {
+      standing.replace(info);
+    } else {
+      pairs_.addInfo(side, info);
+    }
+  }
+
+  void processPairs(const ros::Time& time, BagProgress& progress, std::size_t done) {
+    while (const auto pair = pairs_.take()) {
+      requireRectified(*pair->left_info, topics_.left_image, topics_.left_info);
+      requireRectified(*pair->right_info, topics_.right_image, topics_.right_info);
+      FrameOutput results;
+      guarded([&] { results = process(*pair); });
+      if (results.disparity) write(results, time);
+      progress.frame(done);
+    }
+  }
+
+  FrameOutput process(const BagPair& pair) {
+    StereoFrame frame;
+    frame.left = read(*pair.left, *pair.left_info, topics_.left_image, left_rectifier_);
+    frame.right = read(*pair.right, *pair.right_info, topics_.right_image, right_rectifier_);
+    frame.left_info = pair.left_info;
+    frame.right_info = pair.right_info;
+    return processor_.process(frame, settings_, {true, true, true});
+  }
+
+  /// Raw images that are taken for rectified ones give wrong depth silently.
+  void requireRectified(const CameraInfo& info, const std::string& image_topic, const std::string& info_topic) const {
+    if (options_.rectify || options_.rectified || isRectifiedName(image_topic) || !needsRectification(info)) return;
+    throw std::runtime_error(
+        image_topic + ": by " + info_topic +
+        " (D, R, K against P) a raw image differs from a rectified one, and its name does not tell "
+        "which it is; use --rectify, or --rectified where it is rectified already");
+  }
+
+  sensor_msgs::ImageConstPtr read(const BagImage& image, const CameraInfo& info, const std::string& topic,
+                                  Rectifier& rectifier) const {
+    constexpr std::int64_t kAlwaysAllowed = 1 << 24;  // px; more only where the calibration tells of them
+    const std::int64_t max_pixels = std::max(kAlwaysAllowed, std::int64_t{info.width} * info.height);
+    sensor_msgs::ImageConstPtr read = image.message->instantiate<sensor_msgs::Image>();
+    if (!read) {
+      const auto compressed = image.message->instantiate<sensor_msgs::CompressedImage>();
+      read = decompress(*compressed, topic, max_pixels);
+    }
+    return options_.rectify ? rectifier.rectify(*read, info, topic) : read;
+  }
+
+  void write(const FrameOutput& results, const ros::Time& time) {
+    const std::string& base = options_.stereo_namespace;
+    output_.write(base + "/disparity", time, results.disparity);
+    output_.write(base + "/depth", time, results.depth);  // the name of version 0.1.0
+    output_.write(base + "/depth/image_rect", time, results.depth);
+    output_.write(base + "/depth/camera_info", time, results.depth_info);
+    output_.write(base + "/confidence", time, results.confidence);
+    for (const std::string& warning : results.report.warnings) ++counts_.warnings[warning];
+    ++counts_.pairs;
+  }
+
+  const Options& options_;
+  BagTopics counts_of_topics_;
+  StereoTopics topics_;
+  StandingCalibration left_info_, right_info_;
+  rosbag::Bag& output_;
+  PairCollector pairs_;
+  FrameProcessor processor_;
+  Rectifier left_rectifier_, right_rectifier_;
+  NodeSettings settings_;
+  std::vector<std::string> results_;  ///< topics that are written here
+  Counts counts_;
+};
+
+void report(const Options& options, const Counts& counts) {
+  constexpr int kMostWarnings = 10;
   std::cout << options.output << ": " << counts.pairs << " disparity images, " << counts.refused << " pairs refused, "
-            << counts.unmatched << " stamps without a whole pair\n";
+            << counts.unmatched << " images without a partner\n";
+  if (counts.replaced > 0) std::cout << counts.replaced << " messages of earlier results were replaced\n";
   if (counts.refused > 0) std::cerr << "process_bag: the first pair that was refused: " << counts.first_problem << '\n';
-  return counts.pairs > 0 ? 0 : 1;
+  int told = 0;
+  for (const auto& [warning, times] : counts.warnings) {
+    if (told++ < kMostWarnings) std::cerr << "process_bag: warning (" << times << " pairs): " << warning << '\n';
+  }
+  if (told > kMostWarnings) std::cerr << "process_bag: " << told - kMostWarnings << " other warnings\n";
 }
 
-int processBag(const Options& options) {
-  NodeSettings settings;
-  settings.pipeline = resolveParams(options.preset, options.pipeline);
+int processBag(Options& options) {
+  if (options.left_calibration.empty() != options.right_calibration.empty()) {
+    throw UsageError("--left-calibration and --right-calibration go together");
+  }
+  if (options.rectify && options.rectified) throw UsageError("--rectify is for raw images, --rectified for others");
+  options.stereo_namespace = normalName(options.stereo_namespace);
+  checkOutputs({options.output}, {options.input, options.preset, options.left_calibration, options.right_calibration},
+               options.overwrite);
   rosbag::Bag input;
   openInput(input, options.input);
-  if (fs::exists(options.output) && !options.overwrite) {
-    throw std::runtime_error(options.output + ": exists already, give another name or --overwrite");
-  }
+  OutputBag output(options.output);
+  output->setCompression(rosbag::compression::LZ4);
+  BagProcessor processor(options, input, *output);
   rosbag::View view(input);
-  requireTopics(view, resolveTopics(options), options.input);
-  // Under another name until it is whole: an interrupted run leaves nothing that looks finished.
-  const std::string partial = options.output + ".active";
-  rosbag::Bag output(partial, rosbag::bagmode::Write);
-  output.setCompression(rosbag::compression::LZ4);
-  const Counts counts = processMessages(options, settings, view, output);
-  output.close();
-  fs::rename(partial, options.output);
-  return report(options, counts);
+  Counts counts;
+  try {
+    counts = processor.run(view);
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error("copying " + options.input + " to " + options.output + ": " + error.what());
+  }
+  if (!counts.silence.empty()) throw std::runtime_error(options.input + ": no pairs: " + counts.silence);
+  if (counts.pairs == 0) throw std::runtime_error("every pair was refused, the first: " + counts.first_problem);
+  output.finish();
+  report(options, counts);
+  return 0;
 }
 
-void addOptions(CLI::App& app, Options& options) {
-  app.add_option("IN", options.input, "Recording with rectified images and camera_info of both views")->required();
-  app.add_option("OUT", options.output, "Bag to write: all of IN, and disparity, depth and confidence")->required();
-  app.add_option("--preset", options.preset, "Preset by name, or a YAML file")->capture_default_str();
-  addPipelineOptions(app, options.pipeline);
+void addInputOptions(CLI::App& app, Options& options) {
   app.add_option("--namespace", options.stereo_namespace, "Namespace of the camera, and of the outputs")
       ->capture_default_str();
   app.add_option("--image-name", options.image_name,
-                 "Name of the images below left and right; compressed ones count too")
-      ->capture_default_str();
+                 "Name of the images below left and right (default image_rect, with --rectify image_raw); of raw and "
+                 "compressed ones the raw are taken");
   app.add_option("--left", options.topics.left_image, "Topic of the left image, instead of NAMESPACE/left/IMAGE-NAME");
   app.add_option("--right", options.topics.right_image, "Topic of the right image");
   app.add_option("--left-info", options.topics.left_info, "Topic of the left camera_info");
   app.add_option("--right-info", options.topics.right_info, "Topic of the right camera_info");
-  app.add_flag("--overwrite", options.overwrite, "Replace OUT where it exists");
+  app.add_option("--left-calibration", options.left_calibration,
+                 "Calibration file (YAML of camera_calibration) instead of the left camera_info");
+  app.add_option("--right-calibration", options.right_calibration, "The same for the right camera");
+  app.add_flag("--rectify", options.rectify, "The images are raw: rectify them first, as image_proc does");
+  app.add_flag("--rectified", options.rectified, "The images are rectified, although their name does not say so");
+  app.add_flag("--approximate-sync", options.sync.approximate, "Pair images whose stamps differ, like the node");
+  app.add_option("--approximate-sync-tolerance", options.sync.tolerance_s, "Largest difference in s, 0 = any")
+      ->check(CLI::Range(0.0, 60.0));
+}
+
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("IN", options.input, "Recording with images and camera_info of both views")->required();
+  app.add_option("OUT", options.output, "Bag to write: all of IN, and disparity, depth and confidence")->required();
+  app.add_option("--preset", options.preset, "Preset by name, or a YAML file")->capture_default_str();
+  addPipelineOptions(app, options.pipeline);
+  addInputOptions(app, options);
+  addOverwriteOption(app, options.overwrite);
   app.footer("Exit codes: 0 done, 1 the recording is at fault, 2 the command line is.");
 }
 
@@ -270,7 +398,7 @@ void addOptions(CLI::App& app, Options& options) {
 }  // namespace fdp_stereo
 
 int main(int argc, char** argv) {
-  CLI::App app("Disparity, depth and confidence for every rectified pair of a recording", "process_bag");
+  CLI::App app("Disparity, depth and confidence for every pair of a recording", "process_bag");
   fdp_stereo::Options options;
   fdp_stereo::addOptions(app, options);
   return fdp_stereo::runTool(app, argc, argv, [&] { return fdp_stereo::processBag(options); });

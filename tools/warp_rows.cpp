@@ -7,6 +7,7 @@
 #include "command_line.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/row_alignment.hpp"
+#include "output_files.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 struct Options {
   std::string image;
   std::string output;
+  bool overwrite = false;
   double shift_px = 0.0;
   double across_px = 0.0;
   double down_px = 0.0;
@@ -27,9 +29,11 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--down", options.down_px, "On top at the lower border, its negative at the upper one, px")
       ->capture_default_str();
+  addOverwriteOption(app, options.overwrite);
 }
 
 int warpRows(const Options& options) {
+  checkOutputs({options.output}, {options.image}, options.overwrite);
   const cv::Mat image = readImage(options.image);
   RowOffsetModel model;
   model.order = 1;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "fdp_stereo/types.hpp"
 
@@ -20,16 +22,29 @@ cv::Mat readDisparity(const std::string& path, double png_scale = 256.0);
 /// cannot hold (negative, or 256 px and more).
 void writeDisparity(const std::string& path, const cv::Mat& disparity);
 
+/// Whether the extension of `path` is one that writeDisparity() knows.
+bool isDisparityName(const std::string& path);
+
 /// Reads a PNG, JPEG, TIFF, BMP, WebP or PNM image as it is: CV_8U or CV_16U, 1 or 3 (BGR; transparency dropped)
-/// channels. Throws std::runtime_error naming the file and what is wrong with it.
+/// channels. Throws std::runtime_error naming the file and what is wrong with it. Pipes can be read, too.
 cv::Mat readImage(const std::string& path);
+/// The same from the bytes of such a file; `name` stands for it in errors. More than max_pixels are refused before
+/// anything is decoded.
+cv::Mat decodeImageFile(std::string_view bytes, const std::string& name,
+                        std::int64_t max_pixels = std::int64_t{kMaxImageSide} * kMaxImageSide);
+/// Whether the extension of `path` is one that writeImage() knows: PNG, JPEG, TIFF, BMP, WebP or PNM.
+bool isImageName(const std::string& path);
 /// Writes an image by the extension of `path`. Throws std::runtime_error naming the file.
 void writeImage(const std::string& path, const cv::Mat& image);
 
+/// Writes a file that gets its name when it is whole; meanwhile it is called PATH.partial. Pipes and devices are
+/// written in place. Throws std::runtime_error naming the file.
+void writeFile(const std::string& path, std::string_view bytes);
+
 /// Reads seeds of the left image: .pfm or .png like readDisparity(), one seed per pixel that has a disparity; else
-/// text, one "x y d [trust]" per line in px, trust 0..1 (1 if left out), '#' begins a comment. Throws
-/// std::runtime_error naming file and line.
-Seeds readSeeds(const std::string& path);
+/// text, one "x y d [trust]" per line in px, trust 0..1 (1 if left out), '#' begins a comment. A map must have
+/// `image_size` unless that is empty. Throws std::runtime_error naming file and line.
+Seeds readSeeds(const std::string& path, cv::Size image_size = {});
 
 /// 255 where a CV_32FC1 map is NaN, 0 elsewhere; CV_8UC1.
 cv::Mat noneMask(const cv::Mat& map);

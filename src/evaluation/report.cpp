@@ -6,31 +6,37 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <iterator>
+#include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "evaluation/pictures.hpp"
 #include "evaluation/report_template.hpp"
 #include "evaluation/runner.hpp"
-#include "json_writer.hpp"
+#include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
 namespace {
 
 namespace fs = std::filesystem;
 
-void addRows(JsonWriter& json, const std::string& key, const std::vector<ResultRow>& rows) {
-  json.open('[', key);
-  for (const ResultRow& row : rows) {
-    json.open('{').add("scene", row.scene).add("method", row.method).open('[', "values");
-    for (const Column& column : resultColumns()) json.add("", column.get(row));
-    json.close(']').close('}');
-  }
-  json.close(']');
-}
+using Json = nlohmann::json;
 
-void addPicture(JsonWriter& json, const std::string& folder, const std::string& file, const std::string& caption) {
-  if (fs::exists(fs::path(folder) / file)) json.open('{').add("file", file).add("caption", caption).close('}');
+constexpr char kTitle[] = "<title>fdp_stereo: evaluation</title>";
+
+Json rowsJson(const std::vector<ResultRow>& rows) {
+  Json list = Json::array();
+  for (const ResultRow& row : rows) {
+    Json values = Json::array();
+    for (const Column& column : resultColumns()) values.push_back(column.get(row));
+    list.push_back({{"scene", row.scene}, {"method", row.method}, {"values", values}});
+  }
+  return list;
 }
 
 std::string fixed(double value, int digits) {
@@ -39,50 +45,59 @@ std::string fixed(double value, int digits) {
   return text.str();
 }
 
+/// One line of pictures: those of the files "kind: caption" that exist.
+Json picturesJson(const std::string& folder, const std::string& scene, const std::string& method,
+                  const std::vector<std::pair<std::string, std::string>>& kinds) {
+  Json line = Json::array();
+  for (const auto& [kind, caption] : kinds) {
+    const std::string file = pictureName(scene, method, kind);
+    if (!fs::exists(fs::path(folder) / file)) continue;
+    line.push_back({{"file", file}, {"caption", method.empty() ? caption : method + ": " + caption}});
+  }
+  return line;
+}
+
 /// Per scene one line of pictures of the input, then one per method.
-void addPictures(JsonWriter& json, const std::string& folder, const std::vector<ResultRow>& rows) {
-  json.open('[', "pictures");
+Json scenesJson(const std::string& folder, const std::vector<ResultRow>& rows) {
   std::vector<std::string> scenes;
+  std::map<std::string, Json> lines;
   for (const ResultRow& row : rows) {
-    if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
-  }
-  for (const std::string& scene : scenes) {
-    json.open('{').add("scene", scene).open('[', "rows").open('[');
-    addPicture(json, folder, pictureName(scene, "", "left"), "left image");
-    addPicture(json, folder, pictureName(scene, "", "truth"), "truth");
-    json.close(']');
-    for (const ResultRow& row : rows) {
-      if (row.scene != scene) continue;
-      json.open('[');
-      const auto add = [&](const char* kind, const std::string& caption) {
-        addPicture(json, folder, pictureName(scene, row.method, kind), row.method + ": " + caption);
-      };
-      add("disparity", "disparity");
-      add("errors", "errors, bad 1 " + fixed(row.errors.bad[3], 2) + " %");
-      add("invalid", "without disparity (magenta)");
-      add("seeds", "seeds");
-      json.close(']');
+    Json& own = lines[row.scene];
+    if (own.is_null()) {
+      scenes.push_back(row.scene);
+      own = Json::array({picturesJson(folder, row.scene, "", {{"left", "left image"}, {"truth", "truth"}})});
     }
-    json.close(']').close('}');
+    own.push_back(picturesJson(folder, row.scene, row.method,
+                               {{"disparity", "disparity"},
+                                {"errors", "errors, bad 1 " + fixed(row.errors.bad[3], 2) + " %"},
+                                {"invalid", "without disparity (magenta)"},
+                                {"seeds", "seeds"}}));
   }
-  json.close(']');
+  Json list = Json::array();
+  for (const std::string& scene : scenes) list.push_back({{"scene", scene}, {"rows", lines[scene]}});
+  return list;
 }
 
 std::string reportJson(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin) {
-  JsonWriter json;
-  json.open('{').add("conditions", origin.conditions).add("command", origin.command).open('[', "columns");
+  Json columns = Json::array();
   for (const Column& column : resultColumns()) {
-    json.open('{').add("name", column.name).add("heading", column.heading);
-    json.add("better", column.better == Better::kSmaller  ? "smaller"
-                       : column.better == Better::kLarger ? "larger"
-                                                          : "");
-    json.close('}');
+    const char* better = column.better == Better::kSmaller  ? "smaller"
+                         : column.better == Better::kLarger ? "larger"
+                                                            : "";
+    columns.push_back({{"name", column.name}, {"heading", column.heading}, {"better", better}});
   }
-  json.close(']');
-  addRows(json, "rows", rows);
-  addRows(json, "means", averageRows(rows));
-  addPictures(json, folder, rows);
-  return json.close('}').text();
+  const std::vector<ResultRow> shown = rowsToShow(rows);
+  const Json page = {{"conditions", origin.conditions},
+                     {"command", origin.command},
+                     {"columns", columns},
+                     {"rows", rowsJson(shown)},
+                     {"means", rowsJson(averageRows(shown))},
+                     {"pictures", scenesJson(folder, newestRows(rows))}};
+  std::string text = page.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");  // safe inside a page's script
+  }
+  return text;
 }
 
 /// i and n of "results-i-of-n.csv"; false for any other name.
@@ -90,32 +105,41 @@ bool parseShardName(const std::string& name, int& index, int& count) {
   return std::sscanf(name.c_str(), "results-%d-of-%d.csv", &index, &count) == 2 && name == shardTableName(index, count);
 }
 
+std::string reportPath(const std::string& folder) { return (fs::path(folder) / "index.html").string(); }
+
 }  // namespace
 
 void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin) {
   std::string page = kReportTemplate;
   const std::string mark = "/*REPORT*/";
   page.replace(page.find(mark), mark.size(), reportJson(folder, rows, origin));
-  const std::string path = (fs::path(folder) / "index.html").string();
-  std::ofstream file(path);
-  file << page;
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
+  writeFile(reportPath(folder), page);
+}
+
+void checkReport(const std::string& folder) {
+  std::ifstream file(reportPath(folder));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text.empty() || text.find(kTitle) != std::string::npos) return;
+  throw std::runtime_error(reportPath(folder) + ": exists and is no page of evaluate; give another folder");
 }
 
 std::vector<ResultRow> mergeShards(const std::string& folder) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder + ": no such folder");
-  int count = 1;
+  std::set<int> counts;
   for (const auto& entry : fs::directory_iterator(folder)) {
     int index = 0;
     int shards = 0;
-    if (parseShardName(entry.path().filename().string(), index, shards)) count = std::max(count, shards);
+    if (parseShardName(entry.path().filename().string(), index, shards)) counts.insert(shards);
   }
+  if (counts.empty() || fs::exists(fs::path(folder) / shardTableName(1, 1))) counts.insert(1);
   std::vector<ResultRow> rows;
-  for (int index = 1; index <= count; ++index) {
-    const std::vector<ResultRow> part = readCsv((fs::path(folder) / shardTableName(index, count)).string());
-    rows.insert(rows.end(), part.begin(), part.end());
+  for (const int count : counts) {
+    for (int index = 1; index <= count; ++index) {
+      const std::vector<ResultRow> part = readCsv((fs::path(folder) / shardTableName(index, count)).string());
+      rows.insert(rows.end(), part.begin(), part.end());
+    }
   }
+  rows = uniqueRows(rows);
   std::stable_sort(rows.begin(), rows.end(), [](const ResultRow& a, const ResultRow& b) { return a.scene < b.scene; });
   return rows;
 }

@@ -19,8 +19,11 @@ struct ReportOrigin {
 /// std::runtime_error naming a file that cannot be written.
 void writeReport(const std::string& folder, const std::vector<ResultRow>& rows, const ReportOrigin& origin);
 
-/// Rows of every shard's table in the folder (or of results.csv where there are no shards), sorted by scene. Throws
-/// std::runtime_error where there is none or a shard is missing.
+/// Throws std::runtime_error where the folder has an index.html that writeReport() did not make.
+void checkReport(const std::string& folder);
+
+/// Unique rows of results.csv and of every shard's table in the folder, sorted by scene. Throws std::runtime_error
+/// where there is no table or a shard is missing.
 std::vector<ResultRow> mergeShards(const std::string& folder);
 
 }  // namespace fdp_stereo

@@ -8,8 +8,11 @@
 #include <cstdio>
 #include <fstream>
 #include <iomanip>
+#include <map>
 #include <sstream>
 #include <stdexcept>
+
+#include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -73,6 +76,24 @@ ResultRow parseRow(const std::string& line) {
   return row;
 }
 
+/// The part of the settings that is the method's.
+std::string methodSettings(const ResultRow& row) { return row.settings.substr(0, row.settings.find('-')); }
+
+template <typename Key>
+std::vector<ResultRow> newestOf(const std::vector<ResultRow>& rows, Key&& key) {
+  std::vector<ResultRow> newest;
+  std::map<std::string, std::size_t> places;
+  for (const ResultRow& row : rows) {
+    const auto [place, is_new] = places.emplace(key(row), newest.size());
+    if (is_new) {
+      newest.push_back(row);
+    } else {
+      newest[place->second] = row;
+    }
+  }
+  return newest;
+}
+
 ResultRow averageOf(const std::vector<const ResultRow*>& rows) {
   ResultRow mean = *rows.front();
   mean.scene = "mean of " + std::to_string(rows.size());
@@ -127,13 +148,13 @@ std::vector<ResultRow> readCsv(const std::string& path) {
   if (!file) throw std::runtime_error(path + ": cannot be read");
   std::vector<ResultRow> rows;
   std::string line;
-  for (int count = 1; std::getline(file, line); ++count) {
+  for (int count = 1; std::getline(file, line) && !file.eof(); ++count) {
     if (count == 1 && line != csvHeader()) throw std::runtime_error(path + ":1: is no table of this version");
     if (count == 1 || line.empty()) continue;
     try {
       rows.push_back(parseRow(line));
     } catch (const std::logic_error&) {
-      throw std::runtime_error(path + ":" + std::to_string(count) + ": is no row of a table");
+      throw std::runtime_error(path + ":" + std::to_string(count) + ": is no row of a table; delete the line");
     }
   }
   return rows;
@@ -152,11 +173,34 @@ std::string csvLine(const ResultRow& row) {
 }
 
 void writeCsv(const std::string& path, const std::vector<ResultRow>& rows) {
-  std::ofstream file(path);
-  file << csvHeader() << '\n';
-  for (const ResultRow& row : rows) file << csvLine(row) << '\n';
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
+  std::string text = csvHeader() + "\n";
+  for (const ResultRow& row : rows) text += csvLine(row) + "\n";
+  writeFile(path, text);
+}
+
+std::vector<ResultRow> uniqueRows(const std::vector<ResultRow>& rows) {
+  return newestOf(rows, [](const ResultRow& row) { return row.scene + '\n' + row.method + '\n' + row.settings; });
+}
+
+std::vector<ResultRow> newestRows(const std::vector<ResultRow>& rows) {
+  return newestOf(rows, [](const ResultRow& row) { return row.scene + '\n' + row.method; });
+}
+
+std::vector<ResultRow> rowsToShow(const std::vector<ResultRow>& rows) {
+  std::map<std::string, std::string> newest;  // settings of a method
+  std::map<std::string, std::size_t> scenes;  // in the order of their first rows
+  for (const ResultRow& row : rows) {
+    newest[row.method] = methodSettings(row);
+    scenes.emplace(row.scene, scenes.size());
+  }
+  std::vector<ResultRow> shown = uniqueRows(rows);
+  for (ResultRow& row : shown) {
+    const std::string settings = methodSettings(row);
+    if (settings != newest[row.method]) row.method += "~" + settings.substr(0, 4);
+  }
+  std::stable_sort(shown.begin(), shown.end(),
+                   [&](const ResultRow& a, const ResultRow& b) { return scenes.at(a.scene) < scenes.at(b.scene); });
+  return shown;
 }
 
 std::vector<ResultRow> averageRows(const std::vector<ResultRow>& rows) {
@@ -192,9 +236,9 @@ std::string tableText(const std::vector<ResultRow>& rows) {
   return out.str();
 }
 
-std::string fingerprint(const std::string& text) {
+std::string fingerprint(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 1099511628211ULL;
+  for (const char c : bytes) hash = (hash ^ static_cast<std::uint8_t>(c)) * 1099511628211ULL;
   char hex[17];
   std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(hash));
   return hex;

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
@@ -16,7 +17,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 struct ResultRow {
   std::string scene;
   std::string method;
-  std::string settings;  ///< fingerprint of all that the figures depend on
+  std::string settings;  ///< fingerprints "METHOD-SCENE" of all that the figures depend on
   DisparityErrors errors;
   double time_ms = kUnknown;         ///< wall time of the run
   double cpu_ms = kUnknown;          ///< CPU time of the process meanwhile; unknown where several scenes run at once
@@ -43,13 +44,22 @@ struct Column {
 /// The numbers of a row in the order of the table.
 const std::vector<Column>& resultColumns();
 
-/// Reads rows that writeCsv() wrote. Throws std::runtime_error naming file and line.
+/// Reads rows that writeCsv() wrote; a last line without an end, which was cut, is left out. Throws std::runtime_error
+/// naming file and line.
 std::vector<ResultRow> readCsv(const std::string& path);
 /// Writes a header line and one line per row, in full precision. Throws std::runtime_error naming the file.
 void writeCsv(const std::string& path, const std::vector<ResultRow>& rows);
 /// One line, as writeCsv() has it.
 std::string csvLine(const ResultRow& row);
 std::string csvHeader();
+
+/// The newest of the rows with the same scene, method and settings, each where the first of them was.
+std::vector<ResultRow> uniqueRows(const std::vector<ResultRow>& rows);
+/// The newest of the rows with the same scene and method, each where the first of them was.
+std::vector<ResultRow> newestRows(const std::vector<ResultRow>& rows);
+/// Unique rows, scene by scene. A method that ran with other settings before is called "NAME~SETTINGS" there, so that
+/// no mean mixes them.
+std::vector<ResultRow> rowsToShow(const std::vector<ResultRow>& rows);
 
 /// Per method the mean over its scenes, weighted as the Middlebury V3 table does; numbers that some scene lacks are
 /// unknown. In order of first appearance; `scene` becomes "mean of N".
@@ -58,7 +68,7 @@ std::vector<ResultRow> averageRows(const std::vector<ResultRow>& rows);
 /// The rows as an aligned text table, averages below.
 std::string tableText(const std::vector<ResultRow>& rows);
 
-/// 64-bit FNV-1a of a text, as 16 hexadecimal digits.
-std::string fingerprint(const std::string& text);
+/// 64-bit FNV-1a of bytes, as 16 hexadecimal digits.
+std::string fingerprint(std::string_view bytes);
 
 }  // namespace fdp_stereo

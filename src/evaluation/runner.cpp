@@ -8,13 +8,13 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <mutex>
+#include <memory>
 #include <set>
 #include <thread>
 
 #include "evaluation/pictures.hpp"
 #include "evaluation/progress.hpp"
+#include "evaluation/result_table.hpp"
 #include "process_memory.hpp"
 
 namespace fdp_stereo {
@@ -63,6 +63,16 @@ double wrongSeeds(const Seeds& seeds, const cv::Mat& truth) {
   return known > 0 ? 100.0 * wrong / known : kUnknown;
 }
 
+/// Fingerprint of the pixels: a scene of another data set with the same name is another scene.
+std::string contentOf(const Scene& scene) {
+  std::string parts;
+  for (const cv::Mat& image : {scene.left, scene.right, scene.truth, scene.mask}) {
+    const cv::Mat whole = image.isContinuous() ? image : image.clone();
+    parts += fingerprint({reinterpret_cast<const char*>(whole.data), whole.total() * whole.elemSize()});
+  }
+  return fingerprint(parts + std::to_string(scene.num_disparities));
+}
+
 /// Time, CPU time and memory of one call.
 class Meter {
  public:
@@ -109,20 +119,20 @@ class Runner {
       all.rows.insert(all.rows.end(), own.rows.begin(), own.rows.end());
       all.failures.insert(all.failures.end(), own.failures.begin(), own.failures.end());
     }
-    if (table_.is_open()) {
-      table_.close();
-      writeCsv(table_path_, all.rows);
-    }
     return all;
   }
 
  private:
   void openTable() {
+    for (const Task& task : tasks_) {
+      std::error_code none;
+      const fs::path pictures = fs::path(options_.folder) / task.files.name;
+      if (!fs::equivalent(pictures, fs::path(task.files.left).parent_path(), none)) continue;
+      throw std::runtime_error(options_.folder + ": is the folder of the scenes; give --report another one");
+    }
     fs::create_directories(options_.folder);
-    table_path_ = (fs::path(options_.folder) / shardTableName(options_.shard_index, options_.shard_count)).string();
-    if (fs::exists(table_path_)) earlier_ = readCsv(table_path_);
-    writeCsv(table_path_, earlier_);
-    table_.open(table_path_, std::ios::app);
+    const std::string name = shardTableName(options_.shard_index, options_.shard_count);
+    table_ = std::make_unique<ResultTable>((fs::path(options_.folder) / name).string());
   }
 
   void work() {
@@ -140,10 +150,11 @@ class Runner {
 
   void runScene(const SceneFiles& files, RunOutcome& outcome) {
     const Scene scene = readScene(files);
+    const std::string content = contentOf(scene);
     if (!options_.folder.empty()) writeScenePictures(options_.folder, scene);
     for (std::size_t m = 0; m < methods_.size(); ++m) {
       try {
-        outcome.rows.push_back(runMethod(scene, methods_[m], settings_[m]));
+        outcome.rows.push_back(runMethod(scene, methods_[m], settings_[m] + "-" + content));
         progress_.step(scene.name + " " + methods_[m].name);
       } catch (const std::exception& error) {
         outcome.failures.push_back({scene.name, methods_[m].name + ": " + error.what()});
@@ -153,11 +164,7 @@ class Runner {
   }
 
   ResultRow runMethod(const Scene& scene, const Method& method, const std::string& settings) {
-    const auto same = [&](const ResultRow& row) {
-      return row.scene == scene.name && row.method == method.name && row.settings == settings;
-    };
-    const auto earlier = std::find_if(earlier_.begin(), earlier_.end(), same);
-    if (earlier != earlier_.end()) return *earlier;
+    if (const ResultRow* earlier = table_ ? table_->find(scene.name, method.name, settings) : nullptr) return *earlier;
     ResultRow row;
     row.scene = scene.name;
     row.method = method.name;
@@ -170,7 +177,7 @@ class Runner {
     if (!result.times.empty()) addDiagnostics(result, scene, row);
     if (!options_.folder.empty()) {
       writeMethodPictures(options_.folder, scene, method.name, result);
-      keep(row);
+      table_->add(row);
     }
     return row;
   }
@@ -187,23 +194,14 @@ class Runner {
     row.rows_after_px = result.row_alignment.rms_after_px;
   }
 
-  void keep(const ResultRow& row) {
-    const std::lock_guard<std::mutex> lock(table_mutex_);
-    table_ << csvLine(row) << std::endl;
-    if (!table_) throw std::runtime_error(table_path_ + ": cannot be written");
-  }
-
   const std::vector<Method>& methods_;
   const RunOptions options_;
   const std::vector<Task> tasks_;
   std::vector<std::string> settings_;
   std::vector<RunOutcome> outcomes_;  // one per task
-  std::vector<ResultRow> earlier_;
   Progress progress_;
   std::atomic<std::size_t> next_{0};
-  std::string table_path_;
-  std::ofstream table_;
-  std::mutex table_mutex_;
+  std::unique_ptr<ResultTable> table_;  // none without a folder
 };
 
 }  // namespace

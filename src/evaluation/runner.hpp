@@ -29,8 +29,8 @@ struct RunOutcome {
 };
 
 /// Runs every method on every scene. With a folder, rows that an earlier run of the same settings left there are taken
-/// over, and each new row is kept as soon as it is known, so that an interrupted run goes on where it was. A broken
-/// scene becomes a failure; the rest goes on. Progress goes to stderr.
+/// over, and each new row is added to them as soon as it is known. A broken scene becomes a failure; the rest goes on.
+/// Progress goes to stderr.
 RunOutcome runMethods(const std::vector<std::string>& scene_paths, const std::vector<Method>& methods,
                       const RunOptions& options);
 

@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
+#include <thread>
+
+#include <sys/stat.h>
 
 namespace fdp_stereo {
 namespace {
@@ -77,6 +81,20 @@ TEST(Pfm, ReadsBigEndianAndComments) {
   expectSame(readDisparity(write("big.PFM", "Pf\n# by hand\n2 2\n1.0\n" + floats)), kHandWorked, 0.0F);
 }
 
+/// netpbm separates the fields by any white space, and ends the header with one character of it.
+TEST(Pfm, ReadsHeadersOfOtherPrograms) {
+  const std::string floats("\x0a\x0d\x80\x3f\0\0\0\x40\0\0\x80\x7f\0\0\0\x3f", 16);  // begins like a line's end
+  const cv::Mat expected = readDisparity(write("plain.pfm", "Pf\n2 2\n-1\n" + floats));
+  ASSERT_FLOAT_EQ(expected.at<float>(1, 1), 2.0F);
+  for (const char* header : {"Pf\n2\n2\n-1\n", "Pf 2 2 -1\n", "Pf\n2 2 -1\n", "Pf\n\n2 2\n-1\n", "Pf\t2\t2\t-1 ",
+                             "Pf\r\n2 2\r\n-1.0\r\n", "Pf\n2 2\n-1.0 \n", "Pf\n2 2 # size\n-1 # little\n",
+                             "Pf # a\n# b\n 2 # c\n2\n-0.0039\n", "Pf\r2 2\r-1\r", "Pf\n2 2\n-1e0\n"}) {
+    expectSame(readDisparity(write("other.pfm", header + floats)), expected, 0.0F);
+    const bool line_ends = std::string(header).back() == '\n';  // else trailing bytes make the data's place a guess
+    if (line_ends) expectSame(readDisparity(write("other.pfm", header + floats + "trailing")), expected, 0.0F);
+  }
+}
+
 TEST(Pfm, WritesWhatItReads) {
   const cv::Mat map = randomDisparity(7, 13);
   const std::string path = tempPath("round.pfm");
@@ -104,6 +122,9 @@ TEST(Pfm, RefusesBrokenFiles) {
   expectContains(error("Pf\n32768 32768\n-1\n" + floats), "truncated");
   expectContains(error("Pf\n99999999999999999999 1\n-1\n" + floats), "broken PFM header");
   expectContains(error(std::string(100000, 'P')), "not a PFM");
+  expectContains(error("Pf" + floats), "not a PFM");
+  expectContains(error("Pf\n2 2 # " + std::string(100000, ' ')), "broken PFM header");
+  expectContains(error("Pf 2 2.5 -1\n" + floats), "broken PFM header");
 }
 
 TEST(PngDisparity, RoundTripsTo256thsOfAPixel) {
@@ -172,6 +193,104 @@ TEST(ReadImage, KeepsDepthAndChannels) {
   EXPECT_EQ(readImage(path).type(), CV_8UC3);
 }
 
+std::string encoded(const char* type, const cv::Mat& image) {
+  std::vector<std::uint8_t> bytes;
+  EXPECT_TRUE(cv::imencode(type, image, bytes));
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat noise(int rows, int cols, int type) {
+  cv::Mat image(rows, cols, type);
+  cv::randu(image, 0, 255);
+  return image;
+}
+
+TEST(DecodeImageFile, GivesWhatReadImageGives) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1, CV_16UC3, CV_8UC4}) {
+    const std::string bytes = encoded(".png", noise(5, 4, type));
+    const cv::Mat image = decodeImageFile(bytes, "topic");
+    EXPECT_EQ(image.channels(), type == CV_8UC1 || type == CV_16UC1 ? 1 : 3);
+    EXPECT_EQ(cv::norm(image, readImage(write("same.png", bytes)), cv::NORM_INF), 0.0);
+  }
+}
+
+TEST(DecodeImageFile, NamesWhatIsWrong) {
+  const auto error = [](const std::string& bytes) { return errorOf([&] { decodeImageFile(bytes, "/left"); }); };
+  const std::string jpeg = encoded(".jpg", noise(40, 50, CV_8UC3));
+  EXPECT_EQ(error(jpeg), "");
+  EXPECT_EQ(error(jpeg + "what a camera appends"), "");
+  expectContains(error(""), "/left: not readable as an image: it is empty");
+  expectContains(error("random bytes"), "not PNG");
+  for (const std::size_t kept : {std::size_t{4}, std::size_t{100}, jpeg.size() / 2, jpeg.size() - 1}) {
+    expectContains(error(jpeg.substr(0, kept)), "truncated JPEG");
+  }
+  for (const std::size_t kept : {std::size_t{1}, std::size_t{2}})
+    expectContains(error(jpeg.substr(0, kept)), "not PNG");
+  const std::string png = encoded(".png", noise(40, 50, CV_8UC1));
+  expectContains(errorOf([&] { decodeImageFile(png, "/left", 1999); }), "claims 50 x 40 px, allowed are 1999");
+  EXPECT_EQ(errorOf([&] { decodeImageFile(png, "/left", 2000); }), "");
+}
+
+/// Every format's header with 60000 x 60000 px, and with more than so few bytes can hold.
+TEST(DecodeImageFile, RefusesSizesBeforeItDecodes) {
+  const auto error = [](std::string bytes, std::size_t at, const std::string& sides) {
+    return errorOf([&] { decodeImageFile(bytes.replace(at, sides.size(), sides), "/left"); });
+  };
+  const cv::Mat image = noise(40, 50, CV_8UC3);
+  const std::string jpeg = encoded(".jpg", image);
+  const std::size_t frame = jpeg.find("\xff\xc0") + 5;
+  expectContains(error(jpeg, frame, "\xea\x60\xea\x60"), "claims 60000 x 60000 px");
+  expectContains(error(jpeg, frame, "\x75\x30\x75\x30"), "bytes can hold");
+  expectContains(error(encoded(".png", image), 16, std::string("\0\0\xea\x60\0\0\xea\x60", 8)),
+                 "claims 60000 x 60000 px");
+  expectContains(error(encoded(".bmp", image), 18, std::string("\x60\xea\0\0\x60\xea\0\0", 8)), "claims 60000 x 60000");
+  expectContains(error("P5 60000 60000 255\n", 0, "P"), "claims 60000 x 60000 px");
+  expectContains(error("P5 99999999999999999999 1 255\n", 0, "P"), "claims 1099511627776 x 1 px");
+  expectContains(error("P6 # no size\n", 0, "P"), "claims 0 x 0 px");
+  const std::string webp = encoded(".webp", image);
+  ASSERT_EQ(decodeImageFile(webp, "webp").size(), image.size());
+  const std::string tiff = encoded(".tiff", image);
+  const std::size_t width = tiff.find(std::string("\x00\x01\x03\x00\x01\x00\x00\x00\x32\x00", 10));
+  ASSERT_NE(width, std::string::npos);
+  expectContains(error(tiff, width + 8, "\x60\xea"), "claims 60000 x 40 px");
+}
+
+TEST(ReadImage, ReadsPipes) {
+  const std::string path = tempPath("pipe.png");
+  std::filesystem::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const cv::Mat image = noise(300, 400, CV_8UC3);  // more than a pipe holds
+  std::thread writer([&] { std::ofstream(path, std::ios::binary) << encoded(".png", image); });
+  EXPECT_EQ(cv::norm(readImage(path), image, cv::NORM_INF), 0.0);
+  writer.join();
+  std::filesystem::remove(path);
+}
+
+TEST(WriteFile, LeavesNothingHalf) {
+  const std::string path = tempPath("whole.txt");
+  writeFile(path, "first");
+  writeFile(path, "second");
+  EXPECT_EQ(read(path), "second");
+  EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
+  const std::string link = tempPath("link.txt");
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(path, link);
+  writeFile(link, "through a link");
+  EXPECT_EQ(read(path), "through a link");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  writeFile("/dev/null", "gone");
+  EXPECT_FALSE(std::filesystem::is_regular_file("/dev/null"));
+  expectContains(errorOf([] { writeFile(testing::TempDir(), "x"); }), "cannot be written");
+  expectContains(errorOf([] { writeFile("/does/not/exist", "x"); }),
+                 "/does/not/exist: cannot be written: No such file");
+}
+
+TEST(WriteImage, RefusesWhatTheFormatCannotHold) {
+  expectContains(errorOf([] { writeImage(tempPath("a.xyz"), noise(2, 2, CV_8UC1)); }), "an image must be .png");
+  expectContains(errorOf([] { writeImage(tempPath("a.jpg"), cv::Mat(2, 2, CV_16UC1, cv::Scalar(1))); }), "8 bits");
+  EXPECT_THROW(writeImage(tempPath("a.png"), cv::Mat()), std::invalid_argument);
+}
+
 TEST(ReadImage, RefusesBrokenPngs) {
   const std::string path = tempPath("whole.png");
   cv::Mat noise(40, 50, CV_8UC3);
@@ -183,7 +302,7 @@ TEST(ReadImage, RefusesBrokenPngs) {
   }
   std::string bomb = whole;
   bomb.replace(16, 8, std::string("\0\0\x75\x30\0\0\x75\x30", 8));  // 30000 x 30000
-  expectContains(errorOf([&] { readImage(write("bomb.png", bomb)); }), "more than the file can hold");
+  expectContains(errorOf([&] { readImage(write("bomb.png", bomb)); }), "bytes can hold");
   bomb.replace(16, 4, std::string("\x7f\xff\xff\xff", 4));
   expectContains(errorOf([&] { readImage(write("bomb.png", bomb)); }), "claims 2147483647 x");
 }
@@ -229,6 +348,18 @@ TEST(Seeds, NamesTheBrokenLine) {
   }
 }
 
+TEST(Seeds, RefusesLinesWithoutEnd) {
+  expectContains(errorOf([] { readSeeds("/dev/zero"); }), "/dev/zero:1: longer than");
+  EXPECT_EQ(readSeeds(write("no_end.txt", "1 2 3\n4 5 6")).size(), 2U);
+}
+
+TEST(Seeds, RefusesMapsOfAnotherSize) {
+  const std::string path = tempPath("half.pfm");
+  writeDisparity(path, cv::Mat(2, 3, CV_32FC1, cv::Scalar(1.0)));
+  EXPECT_EQ(readSeeds(path, {3, 2}).size(), 6U);
+  expectContains(errorOf([&] { readSeeds(path, {6, 4}); }), "is 3 x 2 px, the left image 6 x 4 px");
+}
+
 TEST(Seeds, ReadsMaps) {
   const std::string path = tempPath("seeds.pfm");
   writeDisparity(path, (cv::Mat_<float>(2, 2) << kInvalidDisparity, 0.5F, kInvalidDisparity, 2.0F));
@@ -256,6 +387,12 @@ TEST(Colorize, NoneIsBlackAndNearIsRed) {
   const cv::Vec3b near = colors.at<cv::Vec3b>(0, 2);
   EXPECT_GT(far[0], far[2]);
   EXPECT_GT(near[2], near[0]);
+}
+
+TEST(Colorize, RefusesOtherTypes) {
+  EXPECT_THROW(colorize(cv::Mat(2, 2, CV_8UC1), {0, 16}), std::invalid_argument);
+  EXPECT_THROW(colorize(cv::Mat(), {0, 16}), std::invalid_argument);
+  EXPECT_THROW(confidenceToGrey(cv::Mat(2, 2, CV_64FC1)), std::invalid_argument);
 }
 
 TEST(ConfidenceToGrey, ScalesAndRounds) {

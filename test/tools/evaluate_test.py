@@ -47,7 +47,7 @@ class EvaluateTest(unittest.TestCase):
         return os.path.join(self.folder.name, name)
 
     def evaluate(self, *arguments, code=0):
-        actual, out, err = run("evaluate", *arguments)
+        actual, out, err = run("evaluate", *arguments, "--overwrite")
         self.assertEqual(actual, code, err)
         return out, err
 
@@ -58,7 +58,7 @@ class EvaluateTest(unittest.TestCase):
             for preset in ("fast", "paper"):
                 output = self.path("d.pfm")
                 run("match", self.scenes[0] + "/im0.png", self.scenes[0] + "/im1.png", "--output", output,
-                    "--num-disparities", 16, "--preset", preset, *[o for o in options if o == "--fill"])
+                    "--num-disparities", 16, "--overwrite", "--preset", preset, *[o for o in options if o == "--fill"])
                 truth, mask = self.truths[0]
                 region = np.ones(mask.shape, bool) if "--all" in options else mask == 255
                 for name, value in score(read_pfm(output), truth, region).items():
@@ -118,6 +118,73 @@ class EvaluateTest(unittest.TestCase):
         self.assertEqual(float(rows["one", "fast"]["bad_0.125"]), 77.5)
         self.evaluate(*self.scenes, "--report", self.report, "--set", "semi_global.p1=0.5")
         self.assertNotEqual(float(read_csv(table)["one", "fast"]["bad_0.125"]), 77.5, "other settings are done anew")
+
+    def test_a_report_keeps_every_row(self):
+        table = os.path.join(self.report, "results.csv")
+        self.evaluate(self.scenes[0], "--report", self.report)
+        self.evaluate(self.scenes[1], "--report", self.report)
+        self.evaluate(self.scenes[0], "--report", self.report, "--preset", "paper", "--fill")
+        self.assertEqual(set(read_csv(table)), {("one", "fast"), ("two", "fast"), ("one", "paper")})
+        self.evaluate(self.scenes[0], "--report", self.report, "--fill")
+        with open(table) as file:
+            lines = file.read().splitlines()
+        self.assertEqual(len(lines), 1 + 4, "filled and unfilled")
+        with open(os.path.join(self.report, "index.html")) as file:
+            page = file.read()
+        self.assertIn("Rows of earlier runs", page)
+        self.assertRegex(page, r'"method":"fast~\w{4}","scene":"two"')
+        self.assertRegex(page, r'"method":"fast","scene":"one"')
+        self.evaluate(*self.scenes[:2], "--report", self.report)
+        with open(table) as file:
+            self.assertEqual(file.read().splitlines(), lines, "nothing is run twice")
+
+    def test_scenes_of_the_same_name_are_told_apart_by_their_pixels(self):
+        other = self.path("others/one")
+        write_scene(other, 77)
+        self.evaluate(self.scenes[0], "--report", self.report)
+        self.evaluate(other, "--report", self.report, "--csv", self.table)
+        self.evaluate(other, "--csv", self.path("fresh.csv"))
+        self.assertEqual(read_csv(self.table)["one", "fast"]["bad_1"],
+                         read_csv(self.path("fresh.csv"))["one", "fast"]["bad_1"])
+
+    def test_goes_on_after_a_cut_line(self):
+        table = os.path.join(self.report, "results.csv")
+        self.evaluate(*self.scenes, "--report", self.report)
+        with open(table, "rb") as file:
+            whole = file.read()
+        for cut in (1, 10, 200):
+            for tail in (b"", b"\0" * 50):
+                with open(table, "wb") as file:
+                    file.write(whole[:-cut] + tail)
+                self.evaluate(*self.scenes, "--report", self.report)
+                self.assertEqual(set(read_csv(table)), {(name, "fast") for name in ("one", "two", "Playtable")})
+        with open(table, "wb") as file:
+            file.write(whole[:20])
+        self.evaluate(*self.scenes, "--report", self.report)
+        self.assertEqual(len(read_csv(table)), 3)
+        with open(table, "w") as file:
+            file.write("somebody's own notes\n")
+        _, err = self.evaluate(*self.scenes, "--report", self.report, code=1)
+        self.assertIn("no table of this version", err)
+        with open(table) as file:
+            self.assertEqual(file.read(), "somebody's own notes\n")
+
+    def test_files_of_others_stay(self):
+        with open(self.table, "w") as file:
+            file.write("mine")
+        code, _, err = run("evaluate", self.scenes[0], "--csv", self.table)
+        self.assertEqual(code, 1)
+        self.assertIn("exists already", err)
+        os.makedirs(self.report)
+        with open(self.report + "/index.html", "w") as file:
+            file.write("<title>mine</title>")
+        _, err = self.evaluate(self.scenes[0], "--report", self.report, code=1)
+        self.assertIn("no page of evaluate", err)
+        _, err = self.evaluate(self.path("scenes"), "--report", self.path("scenes"), code=1)
+        self.assertIn("folder of the scenes", err)
+        self.assertFalse(os.path.exists(self.path("scenes/results.csv")))
+        _, err = self.evaluate(self.path("scenes"), "--csv", self.path("no/table.csv"), code=1)
+        self.assertIn("there is no folder", err)
 
     def test_shards_put_together_are_the_whole(self):
         whole, parts = self.path("whole"), self.path("parts")

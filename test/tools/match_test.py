@@ -4,13 +4,16 @@
 """match as a user meets it: outputs, options, error lines and exit codes."""
 import json
 import os
+import re
+import resource
+import subprocess
 import tempfile
 import unittest
 
 import cv2
 import numpy as np
 
-from support import rendered_pair, read_pfm, run, write_pfm
+from support import BIN, rendered_pair, read_pfm, run, write_pfm
 
 
 class MatchTest(unittest.TestCase):
@@ -29,7 +32,7 @@ class MatchTest(unittest.TestCase):
 
     def match(self, *options, output="d.pfm"):
         code, out, err = run("match", self.left, self.right, "--output", self.path(output), "--num-disparities", 16,
-                             *options)
+                             "--overwrite", *options)
         self.assertEqual(code, 0, err)
         self.assertEqual(err, "")
         return out
@@ -116,10 +119,98 @@ class MatchTest(unittest.TestCase):
         seeds = self.path("seeds.txt")
         with open(seeds, "w") as file:
             file.write("60 30 9\n20 30 4 0.9\n1000 1000 9\n")
+        out = self.match("--seeds", seeds)
+        self.assertIn("warning: 1 of 3 seeds are outside the image, 110 x 60 px", out)
         self.match("--seeds", seeds, "--timings", self.path("t.json"), "--set", "row_alignment.enabled=false", "--preset",
                    "paper")
         with open(self.path("t.json")) as file:
             self.assertGreaterEqual(json.load(file)["seeds"], 2)
+
+    def test_seeds_of_another_size_are_refused(self):
+        write_pfm(self.path("half.pfm"), self.truth[::2, ::2])
+        self.refused(1, "half.pfm: is 55 x 30 px, the left image 110 x 60 px", self.left, self.right, "--output",
+                     self.path("d.pfm"), "--seeds", self.path("half.pfm"))
+
+    def test_exchanged_views_are_told(self):
+        left, right, _ = rendered_pair(height=160, width=240)
+        cv2.imwrite(self.left, left)
+        cv2.imwrite(self.right, right)
+        self.assertNotIn("exchange", self.match())
+        self.left, self.right = self.right, self.left
+        for options in ([], ["--fill"]):
+            self.assertIn("exchange LEFT and RIGHT", self.match(*options))
+
+    def test_a_range_outside_the_image_is_refused(self):
+        for smallest in (110, 900, -130):
+            self.refused(1, "set --min-disparity near 0", self.left, self.right, "--output", self.path("d.pfm"),
+                         "--num-disparities", 16, "--min-disparity", smallest)
+
+    def test_images_come_through_pipes(self):
+        self.match()
+        expected = read_pfm(self.path("d.pfm"))
+        command = "'%s' <(cat '%s') <(cat '%s') -o '%s' --num-disparities 16" % (
+            os.path.join(BIN, "match"), self.left, self.right, self.path("p.pfm"))
+        subprocess.run(["bash", "-c", command], check=True, stdout=subprocess.DEVNULL)
+        np.testing.assert_array_equal(read_pfm(self.path("p.pfm")), expected)
+
+    def test_inputs_and_files_of_others_stay(self):
+        seeds = self.path("seeds.txt")
+        with open(seeds, "w") as file:
+            file.write("60 30 9\n")
+        os.symlink(self.left, self.path("link.png"))
+        for path in (self.left, self.right, self.path("link.png")):
+            self.refused(1, "is an input", self.left, self.right, "--output", path, "--overwrite")
+        self.refused(1, "is an input", self.left, self.right, "--output", self.path("d.pfm"), "--timings", seeds, "--seeds",
+                     seeds, "--overwrite")
+        with open(self.path("mine.png"), "w") as file:
+            file.write("mine")
+        for option in ("--color", "--confidence", "--draw-seeds", "--row-alignment", "--timings"):
+            self.refused(1, "exists already", self.left, self.right, "--output", self.path("d.pfm"), option,
+                         self.path("mine.png"))
+        self.refused(1, "two outputs", self.left, self.right, "-o", self.path("d.png"), "--color", self.path("d.png"))
+        self.assertFalse(os.path.exists(self.path("d.pfm")))
+        self.match("--color", self.path("mine.png"))
+        self.assertIsNotNone(cv2.imread(self.path("mine.png")))
+        self.assertEqual([name for name in os.listdir(self.folder.name) if "partial" in name], [])
+
+    def test_outputs_are_checked_before_the_work(self):
+        for output, part in (("/does/not/exist/d.pfm", "there is no folder"), (self.path("d.tif"), ".pfm or .png"),
+                             (self.path("d"), ".pfm or .png"), (self.folder.name, ".pfm or .png")):
+            self.refused(1, part, self.path("none.png"), self.right, "--output", output)
+        for option in ("--color", "--draw-seeds", "--row-alignment", "--confidence"):
+            self.refused(1, "c.xyz: must be", self.path("none.png"), self.right, "--output", self.path("d.pfm"), option,
+                         self.path("c.xyz"))
+
+    def test_devices_can_be_written(self):
+        _, out, _ = run("match", self.left, self.right, "-o", self.path("e.pfm"), "--timings", "/dev/stdout")
+        self.assertIn('"total_ms"', out)
+
+    def test_version(self):
+        with open(os.path.join(os.environ["FDP_STEREO_SOURCE"], "package.xml")) as file:
+            version = re.search("<version>(.+)</version>", file.read()).group(1)
+        for tool in ("match", "evaluate", "make_seeds", "warp_rows", "process_bag", "images_to_bag", "demo_report",
+                     "latency_probe"):
+            if os.path.exists(os.path.join(BIN, tool)):
+                code, out, _ = run(tool, "--version")
+                self.assertEqual((code, out), (0, "%s (fdp_stereo) %s\n" % (tool, version)))
+
+    def test_out_of_memory_is_a_line(self):
+        """An error, no signal, at any limit; below what the libraries themselves need, the loader tells."""
+        left, right, _ = rendered_pair(height=600, width=800)
+        cv2.imwrite(self.left, left)
+        cv2.imwrite(self.right, right)
+        limits_mb = {"fast": (100, 150, 200, 250, 300, 350, 400, 450, 500, 600), "accurate": (250, 400), "paper": (250, 400)}
+        for preset, limits in limits_mb.items():
+            for limit_mb in limits:
+                done = subprocess.run(
+                    [os.path.join(BIN, "match"), self.left, self.right, "-o", self.path("o.pfm"), "--overwrite", "--preset",
+                     preset, "--num-disparities", "200", "--set", "local_expansion.iterations=0"],
+                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300,
+                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20)))
+                with self.subTest(preset=preset, limit_mb=limit_mb):
+                    self.assertGreaterEqual(done.returncode, 0, "ended by a signal: " + done.stderr)
+                    if done.returncode != 0:
+                        self.assertNotEqual(done.stderr, "")
 
     def test_lists_every_parameter(self):
         code, out, _ = run("match", "--list-parameters")

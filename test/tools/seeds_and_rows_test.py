@@ -27,7 +27,7 @@ class SeedsAndRowsTest(unittest.TestCase):
         return os.path.join(self.folder.name, name)
 
     def ok(self, tool, *arguments):
-        code, out, err = run(tool, *arguments)
+        code, out, err = run(tool, *arguments, "--overwrite")
         self.assertEqual(code, 0, err)
         return out
 
@@ -69,6 +69,16 @@ class SeedsAndRowsTest(unittest.TestCase):
             picture = cv2.imread(self.path(name))
             self.assertEqual(picture.shape, (160, 240, 3))
             self.assertGreater(picture.std(), 5.0)
+
+    def test_inputs_and_files_of_others_stay(self):
+        write_pfm(self.path("truth.pfm"), self.truth)
+        for arguments in (["make_seeds", self.path("truth.pfm"), "--output", self.path("truth.pfm"), "--overwrite"],
+                          ["warp_rows", self.left, "--output", self.left, "--overwrite"],
+                          ["warp_rows", self.left, "--output", self.right],
+                          ["make_seeds", self.path("truth.pfm"), "--output", self.right],
+                          ["make_seeds", self.path("truth.pfm"), "--output", self.path("no/folder.txt")]):
+            code, out, err = run(*arguments)
+            self.assertEqual((code, out, err.count("\n")), (1, "", 1), err)
 
     def test_bad_usage_is_refused(self):
         for arguments in (["make_seeds", self.left, "--output", self.path("s.txt"), "--seed-share", 2],
