@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # cpack -G DEB, as scripts/package.sh calls it: a Debian package for /usr that brings what the demo needs.
-file(STRINGS ${PROJECT_SOURCE_DIR}/package.xml _version_line REGEX "<version>")
-string(REGEX REPLACE ".*<version>([^<]+)</version>.*" "\\1" _version "${_version_line}")
 set(CPACK_PACKAGE_NAME fdp-stereo)
-set(CPACK_PACKAGE_VERSION ${_version})
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "The fdp_stereo authors <maintainers@fdp-stereo.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Stereo matching for robots and for the shell (ROS 1 nodelet and tools)")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)

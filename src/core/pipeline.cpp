@@ -12,6 +12,7 @@
 
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/scaling.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -113,7 +114,10 @@ struct Pipeline::Buffers {
   CostVolume volume;
 };
 
-Pipeline::Pipeline(const PipelineParams& params) : buffers_(std::make_unique<Buffers>()) { setParams(params); }
+Pipeline::Pipeline(const PipelineParams& params) : buffers_(std::make_unique<Buffers>()) {
+  checkWantedSimdLevel();
+  setParams(params);
+}
 Pipeline::~Pipeline() = default;
 
 void Pipeline::setParams(const PipelineParams& params) {

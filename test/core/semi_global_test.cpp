@@ -4,15 +4,13 @@
 
 #include <cmath>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
 #include "fdp_stereo/matching_cost.hpp"
+#include "reference/instruction_sets.hpp"
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
 #include "reference/semi_global_reference.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -102,25 +100,21 @@ TEST(SemiGlobal, TheRightViewReadsTheSameSums) {
   }
 }
 
-TEST(SemiGlobal, ThreadsAndInstructionSetsAgree) {
+using SemiGlobalKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(SemiGlobalKernel);
+
+TEST_P(SemiGlobalKernel, GivesTheSameBits) {
   for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
     const CostVolume volume = fittingVolume(31, 45, {0, 37}, depth, 41);
     const cv::Mat left = reference::noise(31, 45, CV_8UC3, 42);
     SemiGlobalParams params = paramsOf(8);
     params.subpixel = SubpixelFit::kBlended;
-    omp_set_num_threads(1);
-    limitSimdLevel(SimdLevel::kBaseline);
-    const OptimizerOutput expected = optimize(volume, left, params);
-    for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-      limitSimdLevel(level);
-      for (const int threads : {1, 2, 4}) {
-        omp_set_num_threads(threads);
-        const OptimizerOutput actual = optimize(volume, left, params);
-        EXPECT_EQ(cv::norm(actual.disparity_left, expected.disparity_left, cv::NORM_INF), 0.0);
-        EXPECT_EQ(cv::norm(actual.confidence, expected.confidence, cv::NORM_INF), 0.0);
-      }
-    }
-    omp_set_num_threads(omp_get_num_procs());
+    const auto optimized = [&] { return optimize(volume, left, params); };
+    const OptimizerOutput actual = onThisSet(optimized);
+    const OptimizerOutput expected = onBaseline(optimized);
+    EXPECT_EQ(reference::differingPixels(actual.disparity_left, expected.disparity_left), 0);
+    EXPECT_EQ(reference::differingPixels(actual.disparity_right, expected.disparity_right), 0);
+    EXPECT_EQ(reference::differingPixels(actual.confidence, expected.confidence), 0);
   }
 }
 
