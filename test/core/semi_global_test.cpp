@@ -8,6 +8,7 @@
 
 #include "fdp_stereo/matching_cost.hpp"
 #include "reference/instruction_sets.hpp"
+#include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
 #include "reference/semi_global_reference.hpp"

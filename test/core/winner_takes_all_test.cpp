@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/instruction_sets.hpp"
+#include "reference/post_processing_reference.hpp"
 #include "reference/random_volume.hpp"
 
 namespace fdp_stereo {

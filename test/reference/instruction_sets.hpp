@@ -50,7 +50,7 @@ inline std::string instructionSetName(const testing::TestParamInfo<SimdLevel>& i
 }  // namespace fdp_stereo
 
 /// For test files that use reference::EveryInstructionSet.
-#define FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(Suite)                                                        \
-  INSTANTIATE_TEST_SUITE_P(Kernels, Suite,                                                                    \
-                           testing::Values(SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512),       \
+#define FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(Suite)                                                  \
+  INSTANTIATE_TEST_SUITE_P(Kernels, Suite,                                                              \
+                           testing::Values(SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512), \
                            reference::instructionSetName)
