@@ -14,7 +14,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 
 say() { echo "test_platform.sh: $*"; }
-fail() { echo "test_platform.sh: $*" >&2; exit "${2:-1}"; }
+fail() { echo "test_platform.sh: $1" >&2; exit "${2:-1}"; }
 
 name="${1:-}"
 case "$name" in

@@ -52,7 +52,8 @@ SimdLevel simdLevel() {
 
 void checkWantedSimdLevel() {
   if (wantedLevel()) return;
-  throw std::invalid_argument("environment variable FDP_STEREO_SIMD is '" + std::string(std::getenv("FDP_STEREO_SIMD")) +
+  throw std::invalid_argument("environment variable FDP_STEREO_SIMD is '" +
+                              std::string(std::getenv("FDP_STEREO_SIMD")) +
                               "': set it to baseline, avx2 or avx512, or not at all");
 }
 
