@@ -8,4 +8,5 @@ catkin_package(
   INCLUDE_DIRS include
   LIBRARIES fdp_stereo_core
   CATKIN_DEPENDS dynamic_reconfigure geometry_msgs nodelet roscpp sensor_msgs stereo_msgs
-  DEPENDS EIGEN3 OpenCV)
+  DEPENDS EIGEN3 OpenCV
+  CFG_EXTRAS fdp_stereo-extras.cmake)

@@ -35,37 +35,37 @@ set_target_properties(disparity_node PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
 add_dependencies(disparity_node fdp_stereo_nodelet)
 
-add_library(fdp_stereo_bags STATIC
-  tools/bag_pairs.cpp
-  tools/bag_topics.cpp
-  tools/calibration_file.cpp
-  tools/compressed_image.cpp
-  tools/rectifier.cpp
-)
-target_link_libraries(fdp_stereo_bags PUBLIC fdp_stereo_nodelet fdp_stereo_tool_support PRIVATE yaml-cpp)
-fdp_stereo_add_tool(images_to_bag tools/images_to_bag.cpp)
-target_link_libraries(images_to_bag PRIVATE fdp_stereo_bags)
-foreach(tool demo_report doctor latency_probe)
-  fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
-  # The version is that of package.xml, as catkin has read it.
-  target_compile_definitions(${tool} PRIVATE FDP_STEREO_VERSION="${${PROJECT_NAME}_VERSION}")
-  target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
-endforeach()
+if(CLI11_FOUND)
+  add_library(fdp_stereo_bags STATIC
+    tools/bag_pairs.cpp
+    tools/bag_topics.cpp
+    tools/calibration_file.cpp
+    tools/compressed_image.cpp
+    tools/rectifier.cpp
+  )
+  target_link_libraries(fdp_stereo_bags PUBLIC fdp_stereo_nodelet fdp_stereo_tool_support PRIVATE ${YAML_CPP_LIBRARIES})
+  foreach(tool images_to_bag process_bag)
+    fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
+    target_link_libraries(${tool} PRIVATE fdp_stereo_bags)
+  endforeach()
+  foreach(tool demo_report doctor latency_probe)
+    fdp_stereo_add_tool(${tool} tools/${tool}.cpp)
+    target_compile_definitions(${tool} PRIVATE FDP_STEREO_VERSION="${PROJECT_VERSION}")
+    target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
+  endforeach()
 
-fdp_stereo_add_tool(process_bag tools/process_bag.cpp)
-target_link_libraries(process_bag PRIVATE fdp_stereo_bags)
-
-# The sample recording, from the pair in sample/.
-set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
-set(_sample_bag ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample/motorcycle.bag)
-add_custom_command(OUTPUT ${_sample_bag}
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample
-  COMMAND images_to_bag --left ${_sample}/left.png --right ${_sample}/right.png --left-info ${_sample}/left.yaml
-          --right-info ${_sample}/right.yaml --rate 2 --repeat 16 --output ${_sample_bag} --overwrite
-  DEPENDS images_to_bag ${_sample}/left.png ${_sample}/right.png ${_sample}/left.yaml ${_sample}/right.yaml)
-add_custom_target(sample_bag ALL DEPENDS ${_sample_bag})
-install(FILES ${_sample_bag} sample/README.md DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/sample)
-install(FILES sample/motorcycle/LICENSE.txt DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/sample)
+  # The sample recording, from the pair in sample/.
+  set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
+  set(_sample_bag ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample/motorcycle.bag)
+  add_custom_command(OUTPUT ${_sample_bag}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sample
+    COMMAND images_to_bag --left ${_sample}/left.png --right ${_sample}/right.png --left-info ${_sample}/left.yaml
+            --right-info ${_sample}/right.yaml --rate 2 --repeat 16 --output ${_sample_bag} --overwrite
+    DEPENDS images_to_bag ${_sample}/left.png ${_sample}/right.png ${_sample}/left.yaml ${_sample}/right.yaml)
+  add_custom_target(sample_bag ALL DEPENDS ${_sample_bag})
+  install(FILES ${_sample_bag} sample/README.md sample/motorcycle/LICENSE.txt
+    DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/sample)
+endif()
 
 # cfg/Disparity.cfg follows the list of parameters: build this target after a change there.
 add_executable(write_cfg EXCLUDE_FROM_ALL src/ros/write_cfg.cpp)
@@ -75,8 +75,7 @@ add_custom_target(update_cfg COMMAND write_cfg ${PROJECT_SOURCE_DIR}/cfg/Dispari
 install(TARGETS disparity_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY launch config cfg rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-install(TARGETS fdp_stereo_core fdp_stereo_nodelet
+install(TARGETS fdp_stereo_nodelet
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(DIRECTORY include/fdp_stereo/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})

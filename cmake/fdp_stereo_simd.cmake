@@ -5,6 +5,7 @@
 # own (FDP_STEREO_ISA), and leaves the choice to run time (src/core/simd/simd.hpp). A kernel source includes nothing but
 # <cstdint>-like headers and intrinsics, which are always inlined: any other inline function compiled for AVX2 could be
 # picked by the linker for everybody.
+set(FDP_STEREO_OPTIMIZE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   set(FDP_STEREO_ISAS baseline avx2 avx512)
   set(FDP_STEREO_FLAGS_baseline "")
@@ -21,7 +22,9 @@ function(fdp_stereo_add_kernels target)
     set(object ${target}_kernels_${isa})
     add_library(${object} OBJECT ${ARGN})
     target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src/core)
-    target_compile_options(${object} PRIVATE -O3 -ffp-contract=off -fopenmp-simd -Wno-psabi ${FDP_STEREO_FLAGS_${isa}})
+    # No trapping: a loop with a condition on floats becomes vectors only where both sides may be computed. Same bits.
+    target_compile_options(${object} PRIVATE ${FDP_STEREO_OPTIMIZE} -ffp-contract=off -fno-trapping-math -fopenmp-simd -Wno-psabi
+      ${FDP_STEREO_FLAGS_${isa}})
     target_compile_definitions(${object} PRIVATE FDP_STEREO_ISA=${isa})
     set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)

@@ -6,6 +6,18 @@ add_library(fdp_stereo_evaluation STATIC src/evaluation/scene.cpp src/evaluation
 target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_core)
 
+# docs/parameters.md follows the list of parameters: build update_docs after a change there; a test compares the two.
+add_executable(parameters_doc tools/parameters_doc.cpp)
+target_link_libraries(parameters_doc PRIVATE fdp_stereo_core)
+add_custom_target(update_docs COMMAND parameters_doc > ${PROJECT_SOURCE_DIR}/docs/parameters.md VERBATIM)
+
+find_package(CLI11 QUIET)
+find_package(nlohmann_json REQUIRED)
+if(NOT CLI11_FOUND)
+  message(STATUS "fdp_stereo: no command-line tools, for CLI11 is not installed")
+  return()
+endif()
+
 # Command-line tools. With catkin they land in devel/lib/fdp_stereo, where rosrun finds them.
 add_library(fdp_stereo_tool_support STATIC tools/command_line.cpp tools/output_files.cpp tools/process_memory.cpp)
 target_compile_definitions(fdp_stereo_tool_support PRIVATE FDP_STEREO_VERSION="${PROJECT_VERSION}")
@@ -18,10 +30,8 @@ function(fdp_stereo_add_tool name)
   if(CATKIN_DEVEL_PREFIX)
     set_target_properties(${name} PROPERTIES
       RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
-    install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-  else()
-    install(TARGETS ${name} RUNTIME DESTINATION bin)
   endif()
+  install(TARGETS ${name} RUNTIME DESTINATION ${FDP_STEREO_BIN_DESTINATION})
 endfunction()
 
 fdp_stereo_add_tool(match tools/match.cpp)
@@ -45,11 +55,7 @@ add_library(fdp_stereo_evaluate STATIC
   src/evaluation/runner.cpp
   ${PROJECT_BINARY_DIR}/generated/report_template.cpp
 )
-target_link_libraries(fdp_stereo_evaluate PUBLIC fdp_stereo_tool_support Threads::Threads)
+target_link_libraries(fdp_stereo_evaluate PUBLIC fdp_stereo_tool_support opencv_calib3d Threads::Threads)
 fdp_stereo_add_tool(evaluate tools/evaluate.cpp)
 target_link_libraries(evaluate PRIVATE fdp_stereo_evaluate)
-
-# docs/parameters.md follows the list of parameters: build update_docs after a change there; a test compares the two.
-add_executable(parameters_doc tools/parameters_doc.cpp)
-target_link_libraries(parameters_doc PRIVATE fdp_stereo_core)
-add_custom_target(update_docs COMMAND parameters_doc > ${PROJECT_SOURCE_DIR}/docs/parameters.md VERBATIM)
+add_subdirectory(benchmark)

@@ -10,12 +10,15 @@ set -euo pipefail
 cd "$FDP_STEREO_ROOT"
 build="${2:-build}"
 
-sources() { git ls-files -- 'include/*.hpp' 'src/*.[ch]pp' 'tools/*.[ch]pp' 'benchmark/*.[ch]pp' 'test/*.[ch]pp'; }
+sources() { git ls-files -- 'include/*.hpp' 'src/*.[ch]pp' 'tools/*.[ch]pp' 'benchmark/*.[ch]pp' 'test/*.[ch]pp' \
+  'examples/*.cpp'; }
 
 lint_format() { sources | xargs clang-format --dry-run --Werror; }
 lint_shell() { git ls-files -- 'scripts/*.sh' .ci/run | xargs shellcheck -x; }
 lint_catkin() { catkin_lint -W2 .; }
-lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet \
+# Those of the given paths that the build compiles: one without ROS has no commands for src/ros.
+compiled() { while read -r path; do ! grep -qF "\"$FDP_STEREO_ROOT/$path\"" "$build/compile_commands.json" || echo "$path"; done; }
+lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' 'examples/*.cpp' | compiled | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet \
   --header-filter="$FDP_STEREO_ROOT/(include|src|tools)/.*"; }
 
 case "${1:-all}" in

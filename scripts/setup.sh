@@ -26,6 +26,9 @@ test_packages=(
   clang clang-format clang-tidy libomp-dev libclang-rt-dev shellcheck catkin-lint catkin-tools chromium chromium-driver doxygen graphviz
 )
 
+# What some releases lack: without CLI11 there are no command-line tools.
+optional_packages=(libcli11-dev catkin-tools libclang-rt-dev)
+
 packages=("${build_packages[@]}" "${run_packages[@]}")
 for argument in "$@"; do
   case "$argument" in
@@ -50,4 +53,12 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 echo "setup.sh: installing ${missing[*]}"
 "${as_root[@]}" apt-get update -q
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"
+available=()
+for package in "${missing[@]}"; do
+  if [[ " ${optional_packages[*]} " == *" $package "* ]] && ! apt-cache show "$package" >/dev/null 2>&1; then
+    echo "setup.sh: this release has no $package"
+  else
+    available+=("$package")
+  fi
+done
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${available[@]}"

@@ -69,12 +69,6 @@ struct ParamRef {
 /// Every parameter of `params`, in the order of the pipeline. The references live as long as `params`.
 std::vector<ParamRef> paramList(PipelineParams& params);
 
-/// Calls visit for each entry of paramList().
-template <typename Visitor>
-void forEachParam(PipelineParams& params, Visitor&& visit) {
-  for (const ParamRef& ref : paramList(params)) visit(ref);
-}
-
 /// The value as text: "true", "12", "0.5", "rho_census".
 std::string toString(const ParamRef& ref);
 /// Sets one value. Throws std::invalid_argument naming key, value and what is allowed.

@@ -17,6 +17,7 @@
 #include "fdp_stereo/scaling.hpp"
 #include "images/blind_pixels.hpp"
 #include "refinement/hidden_pixels.hpp"
+#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -133,7 +134,10 @@ struct Pipeline::Frame {
   OptimizerOutput optimized;
 };
 
-Pipeline::Pipeline(const PipelineParams& params) : state_(std::make_unique<State>()) { setParams(params); }
+Pipeline::Pipeline(const PipelineParams& params) : state_(std::make_unique<State>()) {
+  checkWantedSimdLevel();
+  setParams(params);
+}
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;

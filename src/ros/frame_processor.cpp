@@ -47,17 +47,6 @@ void checkHeader(const std_msgs::Header& header, const std::string& topic, std::
   }
 }
 
-/// Filled or not, what the right camera cannot see stays unknown: consumers rely on a map that is not fully dense.
-void dropUnseen(cv::Mat& disparity) {
-  for (int y = 0; y < disparity.rows; ++y) {
-    auto* row = disparity.ptr<float>(y);
-    for (int x = 0; x < disparity.cols; ++x) {
-      const float match = static_cast<float>(x) - row[x];
-      if (match < 0.0F || match > static_cast<float>(disparity.cols - 1)) row[x] = kInvalidDisparity;
-    }
-  }
-}
-
 double validShare(const cv::Mat& disparity) {
   return static_cast<double>(cv::countNonZero(disparity == disparity)) / static_cast<double>(disparity.total());
 }
@@ -98,7 +87,6 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
       {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
   PipelineResult result = pipelineFor(settings).run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
-  dropUnseen(result.disparity);
 
   const std_msgs::Header& header = frame.left->header;
   if (wanted.disparity) {

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <omp.h>
-
 #include "reference/disparity_propagation_reference.hpp"
+#include "reference/instruction_sets.hpp"
 #include "seeds/surface_propagation.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -269,32 +267,30 @@ TEST(SurfacePropagation, WaysEqualTheReference) {
   }
 }
 
-TEST(SurfacePropagation, ThreadsAndInstructionSetsAgree) {
+using SurfacePropagationKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(SurfacePropagationKernel);
+
+TEST_P(SurfacePropagationKernel, GivesTheSameBits) {
   cv::RNG rng(8);
   cv::Mat left(61, 83, CV_8UC3);
   rng.fill(left, cv::RNG::UNIFORM, 0, 80);
   Seeds seeds;
   for (int i = 0; i < 50; ++i)
     seeds.push_back(seedAt(rng.uniform(0.0F, 82.0F), rng.uniform(0.0F, 60.0F), rng.uniform(0.0F, 20.0F)));
-  const auto run = [&] {
-    CostVolume volume = constantVolume(left.size(), {0, 21}, CostVolume::Depth::kU8, 120);
-    propagateDisparity(seeds, left, surfaceParams(), volume);
-    std::vector<int> values;
-    for (int y = 0; y < 61; ++y) {
-      for (int x = 0; x < 83; ++x) {
-        for (int i = 0; i < 21; ++i) values.push_back(volume.raw(y, x, i));
+  for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
+    const auto costs = [&] {
+      CostVolume volume = constantVolume(left.size(), {0, 21}, depth, 120);
+      propagateDisparity(seeds, left, surfaceParams(), volume);
+      std::vector<int> values;
+      for (int y = 0; y < 61; ++y) {
+        for (int x = 0; x < 83; ++x) {
+          for (int i = 0; i < 21; ++i) values.push_back(volume.raw(y, x, i));
+        }
       }
-    }
-    return values;
-  };
-  const std::vector<int> expected = run();
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  EXPECT_EQ(run(), expected);
-  omp_set_num_threads(threads);
-  limitSimdLevel(SimdLevel::kBaseline);
-  EXPECT_EQ(run(), expected);
-  limitSimdLevel(SimdLevel::kAvx512);
+      return values;
+    };
+    EXPECT_EQ(onThisSet(costs), onBaseline(costs));
+  }
 }
 
 // Rows of seeds on a floor: the steps from row to row are larger than the scatter that the fit forgives at the end.

@@ -4,13 +4,11 @@
 
 #include <cmath>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -62,21 +60,20 @@ TEST(DisparitySmoothing, RadiusZeroIsOff) {
   EXPECT_EQ(reference::differingPixels(after, before), 0);
 }
 
-TEST(DisparitySmoothing, ThreadsAndInstructionSetsAgree) {
+using DisparitySmoothingKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(DisparitySmoothingKernel);
+
+TEST_P(DisparitySmoothingKernel, GivesTheSameBits) {
   const cv::Mat before = reference::randomDisparity(40, 57, 0.0, 6.0, 0.1, 9);
-  const cv::Mat left = reference::texture(40, 57, CV_8UC3, 10);
-  omp_set_num_threads(1);
-  limitSimdLevel(SimdLevel::kBaseline);
-  cv::Mat expected = before.clone();
-  smoothDisparity(expected, left, {4, 15.0, 1.5});
-  omp_set_num_threads(3);
-  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    limitSimdLevel(level);
-    cv::Mat actual = before.clone();
-    smoothDisparity(actual, left, {4, 15.0, 1.5});
-    EXPECT_EQ(reference::differingPixels(actual, expected), 0);
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    const cv::Mat left = reference::texture(40, 57, type, 10);
+    const auto smoothed = [&] {
+      cv::Mat after = before.clone();
+      smoothDisparity(after, left, {4, 15.0, 1.5});
+      return after;
+    };
+    EXPECT_EQ(reference::differingPixels(onThisSet(smoothed), onBaseline(smoothed)), 0);
   }
-  omp_set_num_threads(omp_get_num_procs());
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/local_expansion_reference.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {
@@ -211,10 +211,11 @@ TEST(ExpansionMove, UnaryOfferTakesWhatIsCheaper) {
   }
 }
 
-TEST(ExpansionMove, EveryInstructionSetTakesTheSame) {
-  std::vector<float> first;
-  for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    limitSimdLevel(level);
+using ExpansionMoveKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(ExpansionMoveKernel);
+
+TEST_P(ExpansionMoveKernel, TakesTheSamePlanes) {
+  const auto offsets = [] {
     Scene scene(37, 29, CV_8UC3, 3);
     const Smoothness smoothness = scene.smoothness();
     ExpansionMove move;
@@ -225,10 +226,9 @@ TEST(ExpansionMove, EveryInstructionSetTakesTheSame) {
       for (float& cost : costs) cost = scene.value(0.0F, 1.0F);
       move.offer(scene.randomPlane(), costs.data());
     }
-    if (first.empty()) first = scene.labels.planes.c;
-    EXPECT_EQ(first, scene.labels.planes.c);
-  }
-  limitSimdLevel(SimdLevel::kAvx512);
+    return scene.labels.planes.c;
+  };
+  EXPECT_EQ(onThisSet(offsets), onBaseline(offsets));
 }
 
 }  // namespace

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/matching_cost.hpp"
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/matching_cost_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -75,11 +73,11 @@ TEST(MatchingCost, EqualPixelsCostNothing) {
   }
 }
 
+constexpr MatchingCostType kTypes[] = {MatchingCostType::kRhoCensus, MatchingCostType::kAdCensus,
+                                       MatchingCostType::kCensus, MatchingCostType::kRho,
+                                       MatchingCostType::kBirchfieldTomasi};
 class EveryType : public testing::TestWithParam<MatchingCostType> {};
-INSTANTIATE_TEST_SUITE_P(MatchingCost, EveryType,
-                         testing::Values(MatchingCostType::kRhoCensus, MatchingCostType::kAdCensus,
-                                         MatchingCostType::kCensus, MatchingCostType::kRho,
-                                         MatchingCostType::kBirchfieldTomasi));
+INSTANTIATE_TEST_SUITE_P(MatchingCost, EveryType, testing::ValuesIn(kTypes));
 
 TEST_P(EveryType, EqualsTheReference) {
   for (const int image_type : {CV_8UC1, CV_8UC3}) {
@@ -130,19 +128,16 @@ TEST_P(EveryType, CostsStayBelowTheirMaximum) {
   }
 }
 
-TEST_P(EveryType, ThreadsAndInstructionSetsAgree) {
+using MatchingCostKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(MatchingCostKernel);
+
+TEST_P(MatchingCostKernel, GivesTheSameBits) {
   const StereoPair pair = prepareImages(reference::texture(13, 53, CV_8UC3, 7), reference::texture(13, 53, CV_8UC3, 8));
-  for (const int bits : {8, 16}) {
-    const MatchingCostParams params = paramsOf(GetParam(), 3);
-    omp_set_num_threads(1);
-    limitSimdLevel(SimdLevel::kBaseline);
-    const CostVolume expected = volumeOf(pair, {-2, 37}, params, bits);
-    omp_set_num_threads(3);
-    for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-      limitSimdLevel(level);
-      expectEqual(volumeOf(pair, {-2, 37}, params, bits), expected);
+  for (const MatchingCostType type : kTypes) {
+    for (const int bits : {8, 16}) {
+      const auto volume = [&] { return volumeOf(pair, {-2, 37}, paramsOf(type, 3), bits); };
+      expectEqual(onThisSet(volume), onBaseline(volume));
     }
-    omp_set_num_threads(omp_get_num_procs());
   }
 }
 

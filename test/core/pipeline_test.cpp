@@ -12,9 +12,9 @@
 #include "evaluation/scene.hpp"
 #include "fdp_stereo/cost_scale.hpp"
 #include "fdp_stereo/io.hpp"
+#include "reference/instruction_sets.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -58,14 +58,30 @@ TEST_P(EveryPreset, ThreadsGiveTheSameBits) {
   }
 }
 
-TEST_P(EveryPreset, InstructionSetsGiveTheSameBits) {
-  limitSimdLevel(SimdLevel::kBaseline);
-  const PipelineResult expected = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
-  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    limitSimdLevel(level);
-    const PipelineResult actual = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
+using PipelineKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(PipelineKernel);
+
+TEST_P(PipelineKernel, GivesTheSameBits) {
+  for (const char* preset : {"fast", "paper"}) {
+    const auto run = [&] { return Pipeline(paramsOf(preset)).run(rendered().left, rendered().right); };
+    const PipelineResult actual = onThisSet(run);
+    const PipelineResult expected = onBaseline(run);
     EXPECT_EQ(reference::differingPixels(actual.disparity, expected.disparity), 0);
+    EXPECT_EQ(reference::differingPixels(actual.confidence, expected.confidence), 0);
   }
+}
+
+TEST(Pipeline, RefusesAnUnknownInstructionSet) {
+  setenv("FDP_STEREO_SIMD", "avx", 1);
+  std::string message;
+  try {
+    Pipeline pipeline(paramsOf("fast"));
+  } catch (const std::invalid_argument& error) {
+    message = error.what();
+  }
+  unsetenv("FDP_STEREO_SIMD");
+  EXPECT_NE(message.find("FDP_STEREO_SIMD is 'avx'"), std::string::npos) << message;
+  EXPECT_NE(message.find("baseline, avx2 or avx512"), std::string::npos) << message;
 }
 
 TEST_P(EveryPreset, ASecondFrameGivesTheSameAsTheFirst) {

@@ -9,8 +9,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/local_expansion_reference.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {
@@ -93,26 +93,28 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PlaneCostCases,
                                          Case{12, 7, 1, 4, 1, 3, CV_8UC3, CostVolume::Depth::kU8},
                                          Case{14, 15, 33, 0, 1, 1, CV_8UC3, CostVolume::Depth::kU8}));
 
-TEST(PlaneCost, EveryInstructionSetGivesTheSameBits) {
+using PlaneCostKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(PlaneCostKernel);
+
+TEST_P(PlaneCostKernel, GivesTheSameBits) {
   const cv::Mat image = randomImage(60, 50, CV_8UC3, 1);
-  const CostVolume volume = randomVolume(60, 50, 40, CostVolume::Depth::kU8, 250, 2);
   const FilterGuide guide = makeFilterGuide(image, 5, 1e-4);
-  const PlaneCost cost(volume, {0, 40}, 1, guide, {1.0, 0.5, 5});
   const PlaneBatch batch = {Plane{0.1F, 0.1F, 12.0F}, Plane{0.0F, -0.2F, 25.0F}, Plane{0.3F, 0.0F, 9.3F}, Plane{}};
   const cv::Rect target(7, 5, 33, 29);
-  std::array<std::vector<float>, kPlaneBatch> first;
-  const std::array<SimdLevel, 3> levels = {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512};
-  for (const SimdLevel level : levels) {
-    limitSimdLevel(level);
-    PlaneCostBuffers buffers;
-    cost.evaluate(batch, target, buffers);
-    for (int k = 0; k < kPlaneBatch; ++k) {
-      const std::vector<float> values(buffers.costs(k), buffers.costs(k) + target.area());
-      if (level == SimdLevel::kBaseline) first[k] = values;
-      EXPECT_EQ(first[k], values) << "plane " << k;
-    }
+  for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
+    const CostVolume volume = randomVolume(60, 50, 40, depth, 250, 2);
+    const PlaneCost cost(volume, {0, 40}, 1, guide, {1.0, 0.5, 5});
+    const auto costs = [&] {
+      PlaneCostBuffers buffers;
+      cost.evaluate(batch, target, buffers);
+      std::vector<float> values;
+      for (int k = 0; k < kPlaneBatch; ++k) {
+        values.insert(values.end(), buffers.costs(k), buffers.costs(k) + target.area());
+      }
+      return values;
+    };
+    EXPECT_EQ(onThisSet(costs), onBaseline(costs));
   }
-  limitSimdLevel(SimdLevel::kAvx512);
 }
 
 TEST(PlaneCost, PlanesThatLeaveTheRangeAreInvalid) {

@@ -4,17 +4,16 @@
 
 #include <cmath>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/io.hpp"
+#include "reference/instruction_sets.hpp"
+#include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
 #include "reference/semi_global_reference.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -111,26 +110,27 @@ TEST(SemiGlobal, TheRightViewReadsTheSameSums) {
   }
 }
 
-TEST(SemiGlobal, ThreadsAndInstructionSetsAgree) {
+using SemiGlobalKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(SemiGlobalKernel);
+
+TEST_P(SemiGlobalKernel, GivesTheSameBits) {
   for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
     const CostVolume volume = fittingVolume(31, 45, {0, 90}, depth, 41);
     const cv::Mat left = reference::noise(31, 45, CV_8UC3, 42);
     SemiGlobalParams params = testParams();
     params.subpixel = SubpixelFit::kBlended;
-    omp_set_num_threads(1);
-    limitSimdLevel(SimdLevel::kBaseline);
-    const OptimizerOutput expected = optimize(volume, left, params);
-    for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-      limitSimdLevel(level);
-      for (const int threads : {1, 2, 3, 8}) {
-        omp_set_num_threads(threads);
-        const OptimizerOutput actual = optimize(volume, left, params);
-        EXPECT_TRUE(reference::sameBits(actual.disparity_left, expected.disparity_left));
-        EXPECT_TRUE(reference::sameBits(actual.disparity_right, expected.disparity_right));
-        EXPECT_TRUE(reference::sameBits(actual.margin, expected.margin));
-      }
+    const auto optimized = [&] { return optimize(volume, left, params); };
+    const OptimizerOutput expected = onBaseline(optimized);
+    const auto expectSame = [&](const OptimizerOutput& actual) {
+      EXPECT_TRUE(reference::sameBits(actual.disparity_left, expected.disparity_left));
+      EXPECT_TRUE(reference::sameBits(actual.disparity_right, expected.disparity_right));
+      EXPECT_TRUE(reference::sameBits(actual.margin, expected.margin));
+    };
+    expectSame(onThisSet(optimized));
+    for (const int threads : {1, 2, 8}) {
+      omp_set_num_threads(threads);
+      expectSame(optimized());
     }
-    omp_set_num_threads(omp_get_num_procs());
   }
 }
 

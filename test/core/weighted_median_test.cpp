@@ -4,13 +4,11 @@
 
 #include <cmath>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -104,21 +102,18 @@ TEST(WeightedMedian, RadiusZeroIsOff) {
   EXPECT_EQ(reference::differingPixels(after, before), 0);
 }
 
-TEST(WeightedMedian, ThreadsAndInstructionSetsAgree) {
+using WeightedMedianKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(WeightedMedianKernel);
+
+TEST_P(WeightedMedianKernel, GivesTheSameBits) {
   const cv::Mat before = reference::randomDisparity(40, 57, 0.0, 30.0, 0.1, 9);
   const cv::Mat left = reference::texture(40, 57, CV_8UC3, 10);
-  omp_set_num_threads(1);
-  limitSimdLevel(SimdLevel::kBaseline);
-  cv::Mat expected = before.clone();
-  filterWeightedMedian(expected, left, {}, paramsOf(3, 30.0));
-  omp_set_num_threads(3);
-  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    limitSimdLevel(level);
-    cv::Mat actual = before.clone();
-    filterWeightedMedian(actual, left, {}, paramsOf(3, 30.0));
-    EXPECT_EQ(reference::differingPixels(actual, expected), 0);
-  }
-  omp_set_num_threads(omp_get_num_procs());
+  const auto filtered = [&] {
+    cv::Mat after = before.clone();
+    filterWeightedMedian(after, left, {}, paramsOf(3, 30.0));
+    return after;
+  };
+  EXPECT_EQ(reference::differingPixels(onThisSet(filtered), onBaseline(filtered)), 0);
 }
 
 }  // namespace

@@ -4,13 +4,11 @@
 
 #include <cmath>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
+#include "reference/instruction_sets.hpp"
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
-#include "simd/simd.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -105,15 +103,14 @@ TEST(WinnerTakesAll, BothViewsTakeTheSmallestCost) {
   }
 }
 
-TEST(WinnerTakesAll, ThreadsAndInstructionSetsAgree) {
+using WinnerTakesAllKernel = reference::EveryInstructionSet;
+FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(WinnerTakesAllKernel);
+
+TEST_P(WinnerTakesAllKernel, GivesTheSameBits) {
   const CostVolume volume = reference::randomVolume(17, 41, {0, 50}, CostVolume::Depth::kU8, 250, 12);
-  omp_set_num_threads(1);
-  limitSimdLevel(SimdLevel::kBaseline);
-  const OptimizerOutput expected = winners(volume, {});
-  omp_set_num_threads(3);
-  limitSimdLevel(SimdLevel::kAvx512);
-  const OptimizerOutput actual = winners(volume, {});
-  omp_set_num_threads(omp_get_num_procs());
+  const auto optimized = [&] { return winners(volume, {}); };
+  const OptimizerOutput actual = onThisSet(optimized);
+  const OptimizerOutput expected = onBaseline(optimized);
   EXPECT_TRUE(reference::sameBits(actual.disparity_left, expected.disparity_left));
   EXPECT_TRUE(reference::sameBits(actual.disparity_right, expected.disparity_right));
   EXPECT_TRUE(reference::sameBits(actual.margin, expected.margin));

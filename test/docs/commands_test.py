@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs every bash block of README and docs from the root of the repository, as a reader would after scripts/build.sh.
+"""Runs every bash block of README and docs from the root of the repository, as a reader would after scripts/build.sh;
+build/ is the folder of the build that runs the test.
 
 A block with `<!-- skip: reason -->` on the line before it is not run; its programs must exist all the same.
 """
@@ -12,6 +13,7 @@ import subprocess
 import unittest
 
 ROOT = os.environ["FDP_STEREO_SOURCE"]
+BUILD = os.environ["FDP_STEREO_BUILD"]
 BLOCK = re.compile(r"(?:<!-- skip: (?P<reason>[^>]+) -->\n)?```bash\n(?P<code>.*?)```", re.S)
 LINK = re.compile(r"\]\((?!https?:|#)(?P<path>[^)#]+)")
 PAGES = sorted(glob.glob(os.path.join(ROOT, "*.md")) + glob.glob(os.path.join(ROOT, "docs", "*.md")))
@@ -19,7 +21,7 @@ PAGES = sorted(glob.glob(os.path.join(ROOT, "*.md")) + glob.glob(os.path.join(RO
 
 def blocks(page):
     with open(page) as file:
-        return [(match["reason"], match["code"]) for match in BLOCK.finditer(file.read())]
+        return [(match["reason"], re.sub(r"\bbuild(?=/)", BUILD, match["code"])) for match in BLOCK.finditer(file.read())]
 
 
 class CommandsTest(unittest.TestCase):
@@ -39,7 +41,7 @@ class CommandsTest(unittest.TestCase):
     def test_programs_of_all_blocks_exist(self):
         for page in PAGES:
             for _, code in blocks(page):
-                for program in re.findall(r"(?:scripts/[\w.]+|build/devel/lib/fdp_stereo/\w+)", code):
+                for program in re.findall(r"(?:scripts/[\w.]+|%s/devel/lib/fdp_stereo/\w+)" % re.escape(BUILD), code):
                     with self.subTest(page=os.path.relpath(page, ROOT), program=program):
                         self.assertTrue(os.access(os.path.join(ROOT, program), os.X_OK))
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The install space: programs, the nodelet in the demo's graph, and an outside package that links the core."""
+"""The install space: programs, and the nodelet in the demo's graph."""
 import os
 import re
 import socket
@@ -12,29 +12,6 @@ import unittest
 BUILD = os.environ["FDP_STEREO_BUILD"]
 SOURCE = os.environ["FDP_STEREO_SOURCE"]
 CLEAN = {"PATH": "/usr/bin:/bin", "HOME": tempfile.gettempdir(), "LANG": "C.UTF-8"}
-
-OUTSIDE_CMAKE = """cmake_minimum_required(VERSION 3.16)
-project(outside CXX)
-set(CMAKE_CXX_STANDARD 17)
-find_package(fdp_stereo REQUIRED)
-add_executable(outside main.cpp)
-target_include_directories(outside PRIVATE ${fdp_stereo_INCLUDE_DIRS})
-target_link_libraries(outside PRIVATE ${fdp_stereo_LIBRARIES})
-"""
-OUTSIDE_CPP = """#include <cstdio>
-#include <fdp_stereo/pipeline.hpp>
-int main() {
-  cv::Mat left(40, 60, CV_8UC1);
-  cv::randu(left, 0, 255);
-  cv::Mat right = left.colRange(5, 60).clone();
-  cv::copyMakeBorder(right, right, 0, 0, 0, 5, cv::BORDER_REPLICATE);
-  fdp_stereo::PipelineParams params = fdp_stereo::loadPreset("fast");
-  params.search = {0, 16};
-  const cv::Mat disparity = fdp_stereo::Pipeline(params).run(left, right).disparity;
-  std::printf("%.1f\\n", disparity.at<float>(20, 30));
-}
-"""
-
 
 def prefix():
     with open(os.path.join(BUILD, "CMakeCache.txt")) as cache:
@@ -85,15 +62,6 @@ class InstallTest(unittest.TestCase):
                     content = file.read()
                 for place in (os.path.join(BUILD, "devel"), os.path.join(SOURCE, "src"), os.path.join(SOURCE, "include")):
                     self.assertFalse(place.encode() + b"/" in content, "%s names %s" % (os.path.join(folder, name), place))
-
-    def test_headers_compile_and_the_library_links_outside(self):
-        with open(self.path("CMakeLists.txt"), "w") as file:
-            file.write(OUTSIDE_CMAKE)
-        with open(self.path("main.cpp"), "w") as file:
-            file.write(OUTSIDE_CPP)
-        self.run_clean("cmake", "-S", ".", "-B", "build", "-DCMAKE_PREFIX_PATH=" + prefix())
-        self.run_clean("cmake", "--build", "build")
-        self.assertEqual(self.run_clean(self.path("build/outside")).strip(), "5.0")
 
     def test_rosrun_finds_the_programs(self):
         self.assertIn("Usage", self.in_ros("rosrun fdp_stereo match --help"))

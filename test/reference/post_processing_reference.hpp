@@ -18,6 +18,7 @@ inline bool bothNanOrNear(float a, float b, float tolerance) {
 
 /// Number of pixels that differ, NaN being equal to NaN.
 inline int differingPixels(const cv::Mat& a, const cv::Mat& b, float tolerance = 0.0F) {
+  if (a.size() != b.size()) return static_cast<int>(std::max(a.total(), b.total()));
   int count = 0;
   for (int y = 0; y < a.rows; ++y) {
     for (int x = 0; x < a.cols; ++x) {

@@ -13,6 +13,11 @@
 #include "features/corner_matching.hpp"
 #include "features/patch_refinement.hpp"
 
+// OpenCV 4.2 has no SIFT in its main part; FDP_STEREO_FORCE_OPENCV_42 builds what is built there.
+#if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 404 && !defined(FDP_STEREO_FORCE_OPENCV_42)
+#define FDP_STEREO_HAVE_SIFT
+#endif
+
 namespace fdp_stereo {
 namespace {
 
@@ -43,20 +48,22 @@ struct Features {
   cv::Mat descriptors;
 };
 
+cv::Ptr<cv::Feature2D> makeDetector(FeatureDetector detector, int max_features) {
+#ifdef FDP_STEREO_HAVE_SIFT
+  if (detector == FeatureDetector::kSift) return cv::SIFT::create(max_features);
+#endif
+  CV_Assert(detector == FeatureDetector::kOrb);
+  return cv::ORB::create(max_features);
+}
+
 Features detect(const cv::Mat& grey, FeatureDetector detector, int max_features) {
   if (std::min(grey.rows, grey.cols) < kMinSidePx) return {};
-  cv::Ptr<cv::Feature2D> algorithm;
-  if (detector == FeatureDetector::kSift) {
-    algorithm = cv::SIFT::create(max_features);
-  } else {
-    algorithm = cv::ORB::create(max_features);
-  }
   Features features;
-  algorithm->detectAndCompute(grey, cv::noArray(), features.points, features.descriptors);
+  makeDetector(detector, max_features)->detectAndCompute(grey, cv::noArray(), features.points, features.descriptors);
   return features;
 }
 
-/// Some builds of OpenCV have SIFT's interface without its algorithm; it throws when it runs.
+/// Old releases of OpenCV have no SIFT, and some builds have its interface without its algorithm: it throws here.
 bool siftWorks() {
   static const bool works = [] {
     try {

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include <Eigen/LU>
-#include <opencv2/imgproc.hpp>
 
 #include "simd/propagation_kernels.hpp"
 
@@ -237,12 +236,29 @@ double blendSurfaces(const Seeds& seeds, const GeodesicMap& map, const Disparity
   return static_cast<double>(changed) / (static_cast<double>(volume.height()) * volume.width());
 }
 
+/// Mean colour of each cell, in whole numbers: cv::resize() rounds otherwise on other processors.
+cv::Mat cellMeans(const cv::Mat& left) {
+  static_assert(kCellPx == 2, "a cell has two rows and columns, of which the border may cut off one");
+  const int channels = left.channels();
+  cv::Mat cells((left.rows + 1) / 2, (left.cols + 1) / 2, left.type());
+  for (int y = 0; y < cells.rows; ++y) {
+    const auto* upper = left.ptr<uchar>(2 * y);
+    const auto* lower = left.ptr<uchar>(std::min(2 * y + 1, left.rows - 1));
+    auto* mean = cells.ptr<uchar>(y);
+    for (int i = 0; i < cells.cols * channels; ++i) {
+      const int a = i / channels * 2 * channels + i % channels;
+      const int b = a + channels < left.cols * channels ? a + channels : a;
+      mean[i] = static_cast<uchar>((upper[a] + upper[b] + lower[a] + lower[b] + 2) / 4);
+    }
+  }
+  return cells;
+}
+
 }  // namespace
 
 GeodesicMap spreadSeeds(const Seeds& seeds, const cv::Mat& left, double gamma, double reach_px) {
-  cv::Mat cells;
-  const cv::Size size((left.cols + kCellPx - 1) / kCellPx, (left.rows + kCellPx - 1) / kCellPx);
-  cv::resize(left, cells, size, 0.0, 0.0, cv::INTER_AREA);
+  const cv::Mat cells = cellMeans(left);
+  const cv::Size size = cells.size();
   GeodesicMap map;
   map.distance = cv::Mat(size, CV_32FC1, cv::Scalar(kFar));
   map.owner = cv::Mat(size, CV_32SC1, cv::Scalar(-1));

@@ -299,19 +299,22 @@ void keepCosts(const MoveTask& task) {
 
 // Difference planes, new minus current, at their own pixels.
 void planeDifferences(const MoveTask& task) {
-  const int n = pitchOf(task);
+  const int n = pitchOf(task), x0 = task.x0;
+  const float plane_a = task.plane_a, plane_b = task.plane_b, plane_c = task.plane_c;
+  const float *a = task.a, *b = task.b, *c = task.c;
   for (int y = 0; y < task.rows; ++y) {
     const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * n;
     const float v = static_cast<float>(task.y0 + y);
     float* __restrict da = task.da + row;
     float* __restrict db = task.db + row;
     float* __restrict dd = task.dd + row;
+#pragma omp simd
     for (int x = 0; x < n; ++x) {
-      const float slope_x = task.plane_a - task.a[row + x];
-      const float slope_y = task.plane_b - task.b[row + x];
+      const float slope_x = plane_a - a[row + x];
+      const float slope_y = plane_b - b[row + x];
       da[x] = slope_x;
       db[x] = slope_y;
-      dd[x] = slope_x * static_cast<float>(task.x0 + x) + slope_y * v + (task.plane_c - task.c[row + x]);
+      dd[x] = slope_x * static_cast<float>(x0 + x) + slope_y * v + (plane_c - c[row + x]);
     }
   }
 }
@@ -322,18 +325,20 @@ void pairTerms(const MoveTask& task, int d) {
   const std::ptrdiff_t step = stepOf(task, d);
   const float sx = static_cast<float>(kStepX[d]);
   const float sy = static_cast<float>(kStepY[d]);
-  const float* dd = task.dd;
+  const float threshold = task.threshold;
+  const float *da = task.da, *db = task.db, *dd = task.dd;
   const float* weight = task.weights[d];
   const float* keep = task.keep[d];
   float* __restrict edge = task.edge[d];
   float* __restrict terminal = task.terminal;
   float* __restrict share = task.share;
+#pragma omp simd
   for (std::ptrdiff_t p = 0; p < size; ++p) {
     const std::ptrdiff_t q = p + step;
-    const float new_p = std::fabs(dd[q]) + std::fabs(dd[q] - task.da[q] * sx - task.db[q] * sy);  // p new, q keeps
-    const float new_q = std::fabs(dd[p]) + std::fabs(dd[p] + task.da[p] * sx + task.db[p] * sy);  // p keeps, q new
-    const float b_cost = weight[p] * truncated(new_p, task.threshold);
-    const float c_cost = weight[p] * truncated(new_q, task.threshold);
+    const float new_p = std::fabs(dd[q]) + std::fabs(dd[q] - da[q] * sx - db[q] * sy);  // p new, q keeps
+    const float new_q = std::fabs(dd[p]) + std::fabs(dd[p] + da[p] * sx + db[p] * sy);  // p keeps, q new
+    const float b_cost = weight[p] * truncated(new_p, threshold);
+    const float c_cost = weight[p] * truncated(new_q, threshold);
     const float rest = 0.5F * (b_cost + c_cost - keep[p]);
     edge[p] = rest > 0.0F ? rest : 0.0F;
     terminal[p] += b_cost - keep[p] - edge[p];
@@ -360,8 +365,14 @@ void moveTerms(const MoveTask& task) {
   }
 }
 
-typedef float Entries __attribute__((vector_size(kMoveLanes * sizeof(float))));
-typedef std::int32_t Flags __attribute__((vector_size(kMoveLanes * sizeof(std::int32_t))));
+// Vectors of one register: comparisons of longer ones are taken apart into single numbers.
+#if defined(__AVX2__)
+constexpr int kEntries = 8;
+#else
+constexpr int kEntries = 4;
+#endif
+typedef float Entries __attribute__((vector_size(kEntries * sizeof(float))));
+typedef std::int32_t Flags __attribute__((vector_size(kEntries * sizeof(std::int32_t))));
 
 // Copies, which compile to moves that need no alignment: through a reference clang takes the vector as aligned.
 inline Entries entries(const float* p) {
@@ -381,7 +392,7 @@ struct Edges {
   explicit Edges(const MoveTask& task)
       : e0(task.edge[0]), e1(task.edge[1]), e2(task.edge[2]), e3(task.edge[3]), pitch(task.pitch) {}
 
-  // Sums of the edges from the entries p .. p + kMoveLanes - 1 to those of their neighbours that are 1.
+  // Sums of the edges from the entries p .. p + kEntries - 1 to those of their neighbours that are 1.
   Entries to(const float* x, std::ptrdiff_t p) const {
     const std::ptrdiff_t n = pitch;
     return entries(e0 + p) * entries(x + p + 1) + entries(e0 + p - 1) * entries(x + p - 1) +
@@ -395,14 +406,14 @@ struct Edges {
 bool improveRow(const MoveTask& task, const Edges& edges, int y, float* x) {
   const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * task.pitch;
   Flags changed = {};
-  for (std::ptrdiff_t p = row; p < row + task.pitch; p += kMoveLanes) {
+  for (std::ptrdiff_t p = row; p < row + task.pitch; p += kEntries) {
     const Entries gain = entries(task.total + p) - 2.0F * edges.to(x, p);
     const Entries value = gain < 0.0F ? entries(task.inner + p) : Entries{};
     changed |= value != entries(x + p);
     setEntries(x + p, value);
   }
   int any = 0;
-  for (int k = 0; k < kMoveLanes; ++k) any |= changed[k];
+  for (int k = 0; k < kEntries; ++k) any |= changed[k];
   return any != 0;
 }
 
@@ -428,8 +439,12 @@ double moveChange(const MoveTask& task) {
   double sums[kMoveLanes] = {};
   const std::ptrdiff_t end = static_cast<std::ptrdiff_t>(task.rows - 1) * task.pitch;
   for (std::ptrdiff_t p = task.pitch; p < end; p += kMoveLanes) {
-    const Entries part = entries(task.lower + p) * (entries(task.total + p) - edges.to(task.lower, p));
-    for (int k = 0; k < kMoveLanes; ++k) sums[k] += static_cast<double>(part[k]);
+    float parts[kMoveLanes];
+    for (int k = 0; k < kMoveLanes; k += kEntries) {
+      const Entries x = entries(task.lower + p + k);
+      setEntries(parts + k, x * (entries(task.total + p + k) - edges.to(task.lower, p + k)));
+    }
+    for (int k = 0; k < kMoveLanes; ++k) sums[k] += static_cast<double>(parts[k]);
   }
   double sum = 0.0;
   for (const double part : sums) sum += part;

@@ -26,10 +26,10 @@ void blend(const T* __restrict prior, int share, int count, T* __restrict raw) {
 void relaxRow(const float* __restrict before, const std::int32_t* __restrict owner_before, const float* __restrict step,
               int count, float* __restrict distance, std::int32_t* __restrict owner) {
   for (int i = 0; i < count; ++i) {
-    const float over = before[i] + step[i];
-    const bool shorter = over < distance[i];
-    owner[i] = shorter ? owner_before[i] : owner[i];
-    distance[i] = shorter ? over : distance[i];
+    const float over = before[i] + step[i], now = distance[i];
+    const std::int32_t shorter = -static_cast<std::int32_t>(over < now);  // a mask: a choice would become a jump
+    owner[i] = (owner_before[i] & shorter) | (owner[i] & ~shorter);
+    distance[i] = over < now ? over : now;
   }
 }
 

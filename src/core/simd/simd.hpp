@@ -10,6 +10,8 @@ enum class SimdLevel { kBaseline = 0, kAvx2 = 1, kAvx512 = 2 };
 /// The best level of this processor, or less: environment variable FDP_STEREO_SIMD = baseline | avx2 | avx512 and
 /// limitSimdLevel() lower it, never raise it.
 SimdLevel simdLevel();
+/// Throws std::invalid_argument where FDP_STEREO_SIMD is none of these names.
+void checkWantedSimdLevel();
 /// For tests: no kernel above `level` from now on.
 void limitSimdLevel(SimdLevel level);
 

@@ -6,8 +6,14 @@ namespace fdp_stereo {
 namespace FDP_STEREO_ISA {
 namespace {
 
-typedef float Floats __attribute__((vector_size(4 * kMedianLanes)));
-typedef std::int32_t Ints __attribute__((vector_size(4 * kMedianLanes)));
+// Vectors of one register: comparisons of longer ones are taken apart into single numbers.
+#if defined(__AVX2__)
+constexpr int kLanes = 8;
+#else
+constexpr int kLanes = 4;
+#endif
+typedef float Floats __attribute__((vector_size(4 * kLanes)));
+typedef std::int32_t Ints __attribute__((vector_size(4 * kLanes)));
 typedef std::int16_t Shorts __attribute__((vector_size(2 * kMedianLanes)));
 typedef std::uint8_t Bytes __attribute__((vector_size(kMedianLanes)));
 
@@ -27,7 +33,7 @@ inline void store(const Vector& v, T* to) {
 
 inline std::int32_t sumOf(const Ints& v) {
   std::int32_t sum = 0;
-  for (int i = 0; i < kMedianLanes; ++i) sum += v[i];
+  for (int i = 0; i < kLanes; ++i) sum += v[i];
   return sum;
 }
 
@@ -39,7 +45,7 @@ struct Samples {
 };
 
 /// Weights of kMedianLanes pixels of row v from column j of the window on.
-inline Ints weightsOf(const MedianWindow& window, int v, int j) {
+inline void storeWeights(const MedianWindow& window, int v, int j, std::int32_t* weights) {
   Shorts distance = {};
   for (int c = 0; c < window.channels; ++c) {
     const auto* pixels = window.planes[c] + v * window.plane_stride + j;
@@ -47,26 +53,25 @@ inline Ints weightsOf(const MedianWindow& window, int v, int j) {
     distance += difference < 0 ? -difference : difference;
   }
   std::int16_t index[kMedianLanes];
-  std::int32_t weights[kMedianLanes];
   store(distance, index);
   for (int i = 0; i < kMedianLanes; ++i) weights[i] = window.table[index[i]];
-  return load<Ints>(weights);
 }
 
 /// Fills values and weights; a neighbour without disparity, or right of the window, weighs nothing.
 Samples gather(const MedianWindow& window, float* values, std::int32_t* weights) {
   Ints lane;
-  for (int i = 0; i < kMedianLanes; ++i) lane[i] = i;
+  for (int i = 0; i < kLanes; ++i) lane[i] = i;
   const Floats centre = Floats{} + window.centre;
   Floats low = centre, high = centre;
   Ints total = {};
   int count = 0;
   for (int v = 0; v < window.side; ++v) {
-    for (int j = 0; j < window.side; j += kMedianLanes, count += kMedianLanes) {
+    for (int j = 0; j < window.side; j += kLanes, count += kLanes) {
+      if (j % kMedianLanes == 0) storeWeights(window, v, j, weights + count);
       const Floats d = load<Floats>(window.disparity + v * window.disparity_stride + j);
       const Ints valid = (d == d) & (lane + j < window.side);
       const Floats value = valid ? d : centre;
-      const Ints weight = weightsOf(window, v, j) & valid;
+      const Ints weight = load<Ints>(weights + count) & valid;
       low = value < low ? value : low;
       high = value > high ? value : high;
       total += weight;
@@ -75,7 +80,7 @@ Samples gather(const MedianWindow& window, float* values, std::int32_t* weights)
     }
   }
   Samples samples{window.centre, window.centre, sumOf(total), count};
-  for (int i = 0; i < kMedianLanes; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     samples.low = low[i] < samples.low ? low[i] : samples.low;
     samples.high = high[i] > samples.high ? high[i] : samples.high;
   }
@@ -86,7 +91,7 @@ Samples gather(const MedianWindow& window, float* values, std::int32_t* weights)
 inline void reachHalf(const float* values, const std::int32_t* weights, const Samples& samples,
                       const float (&limits)[3], bool (&reached)[3]) {
   Ints sums[3] = {};
-  for (int i = 0; i < samples.count; i += kMedianLanes) {
+  for (int i = 0; i < samples.count; i += kLanes) {
     const Floats value = load<Floats>(values + i);
     const Ints weight = load<Ints>(weights + i);
     for (int k = 0; k < 3; ++k) sums[k] += (value <= limits[k]) & weight;
@@ -97,13 +102,13 @@ inline void reachHalf(const float* values, const std::int32_t* weights, const Sa
 /// The smallest sample in (below, above]; above if there is none.
 inline float smallestIn(const float* values, const std::int32_t* weights, int count, float below, float above) {
   Floats smallest = Floats{} + above;
-  for (int i = 0; i < count; i += kMedianLanes) {
+  for (int i = 0; i < count; i += kLanes) {
     const Floats value = load<Floats>(values + i);
     const Ints inside = (load<Ints>(weights + i) > 0) & (value > below) & (value < smallest);
     smallest = inside ? value : smallest;
   }
   float result = above;
-  for (int i = 0; i < kMedianLanes; ++i) result = smallest[i] < result ? smallest[i] : result;
+  for (int i = 0; i < kLanes; ++i) result = smallest[i] < result ? smallest[i] : result;
   return result;
 }
 

@@ -8,9 +8,6 @@
 
 namespace fdp_stereo::local_expansion {
 
-constexpr std::array<int, GridMaxFlow::kDirections> GridMaxFlow::kDx;
-constexpr std::array<int, GridMaxFlow::kDirections> GridMaxFlow::kDy;
-
 void GridMaxFlow::reset(int width, int height) {
   const int stride = width + 2;  // a ring of places without nodes stands in for tests of the border
   const std::size_t size = static_cast<std::size_t>(stride) * (height + 2);

@@ -19,7 +19,7 @@ std::vector<int> borders(int size, int cell) {
 
 }  // namespace
 
-Layer::Layer(cv::Size image, int cell_px) : cell_px_(cell_px) {
+Layer::Layer(cv::Size image, int cell_px) {
   const std::vector<int> xs = borders(image.width, cell_px);
   const std::vector<int> ys = borders(image.height, cell_px);
   const int columns = static_cast<int>(xs.size()) - 1;

@@ -27,10 +27,8 @@ class Layer {
   /// Cells (i, j) with equal i mod 4 and j mod 4. Between the regions of two cells of one group lies at least a whole
   /// cell, so neither their pixels nor their pairs of neighbours touch: they can be moved at the same time.
   const std::vector<int>& group(int g) const { return groups_[g]; }
-  int cellPx() const { return cell_px_; }
 
  private:
-  int cell_px_;
   std::vector<Cell> cells_;
   std::array<std::vector<int>, kGroups> groups_;
 };

@@ -47,7 +47,6 @@ class PlaneCost {
   void evaluate(const PlaneBatch& batch, const cv::Rect& target, PlaneCostBuffers& buffers) const;
   /// Does the plane stay in the range around (x, y)?
   bool isValid(const Plane& plane, int x, int y) const;
-  DisparityRange range() const { return range_; }
 
  private:
   void markInvalid(const Plane& plane, const cv::Rect& target, float* costs) const;

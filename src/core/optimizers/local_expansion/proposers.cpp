@@ -25,6 +25,11 @@ Eigen::Vector3f unitVector(Random& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
+// Of length 1. Eigen's own sums of three numbers have another order on other processors.
+Eigen::Vector3f normalized(const Eigen::Vector3f& v) {
+  return v / std::sqrt(v.x() * v.x() + (v.y() * v.y() + v.z() * v.z()));
+}
+
 // Slopes of the plane with this normal.
 Plane planeWithNormal(float x, float y, float d, const Eigen::Vector3f& normal) {
   const float z = std::max(normal.z(), kSmallestNormalZ);
@@ -96,8 +101,8 @@ Plane proposeRandom(const Labels& labels, const cv::Rect& core, DisparityRange r
   const Plane plane = labels.plane(p.x, p.y);
   const float d = std::clamp(plane.at(p.x, p.y) + random.uniform(-reach, reach), static_cast<float>(range.min),
                              static_cast<float>(range.max()));
-  const Eigen::Vector3f normal = Eigen::Vector3f(-plane.a, -plane.b, 1.0F).normalized() + tilt * unitVector(random);
-  return planeWithNormal(static_cast<float>(p.x), static_cast<float>(p.y), d, normal.normalized());
+  const Eigen::Vector3f normal = normalized({-plane.a, -plane.b, 1.0F}) + tilt * unitVector(random);
+  return planeWithNormal(static_cast<float>(p.x), static_cast<float>(p.y), d, normalized(normal));
 }
 
 Plane fitPlane(std::vector<SurfacePoint>& points, const RansacParams& params, Random& random) {
