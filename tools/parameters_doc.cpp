@@ -25,7 +25,7 @@ std::string rangeText(const ParamRef& ref) {
 void printHead() {
   std::cout
       << "# Parameters\n\n"
-         "Made by `parameters_doc` from the list in `src/core/params/pipeline_params.cpp`; do not edit by hand.\n\n"
+         "Made by `parameters_doc` from the list in `src/core/params/parameter_list.cpp`; do not edit by hand.\n\n"
          "A parameter has one key, `stage.name`, everywhere: in YAML (nested or dotted), on the command line as\n"
          "`--set stage.name=value`, and in ROS under the name in the last column, as a private parameter of the\n"
          "node and in dynamic_reconfigure. An unknown key is an error that names the nearest one. A value that a\n"

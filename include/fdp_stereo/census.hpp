@@ -11,8 +11,8 @@ namespace fdp_stereo {
 
 /// Stage 3: census bit strings (paper 2.1.4 and 3.1).
 struct CensusParams {
-  int window_width = 9;   ///< px, odd; (width * height - 1) <= 64 bits
-  int window_height = 7;  ///< px, odd
+  int window_width = 5;   ///< px, odd; (width * height - 1) <= 64 bits
+  int window_height = 5;  ///< px, odd
 };
 
 /// One code per pixel, row by row. Bit = neighbour < centre, neighbours in raster order, border replicated.

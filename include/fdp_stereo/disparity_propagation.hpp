@@ -13,8 +13,8 @@ enum class PropagationForm { kWindow, kSurface };
 /// Stage 6: feature disparity propagation (paper 3.3, algorithm 1, eq. 11).
 struct DisparityPropagationParams {
   bool enabled = true;
-  bool image_seeds = true;  ///< spread SeedSource::kFeature too, not only other sensors' seeds
-  PropagationForm form = PropagationForm::kWindow;
+  bool image_seeds = false;  ///< spread SeedSource::kFeature too, not only other sensors' seeds
+  PropagationForm form = PropagationForm::kSurface;
   int window = 5;  ///< kWindow: W_p is window x window px, odd
   double gamma =
       10.0;  ///< eq. (11): kWindow: of |dI|_1; kSurface: of |dI| per step along the way, mean of the channels

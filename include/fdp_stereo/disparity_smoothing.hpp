@@ -10,9 +10,9 @@ namespace fdp_stereo {
 /// mean, first along the rows, then along the columns. A neighbour at colour distance |dI|_1 (mean of the channels)
 /// and disparity difference e weighs max(0, 1 - (e / max_difference_px)^2) / (1 + (|dI|_1 / gamma)^2).
 struct DisparitySmoothingParams {
-  int radius = 0;                  ///< px; 0 = off
+  int radius = 4;                  ///< px; 0 = off
   double gamma = 15.0;             ///< grey levels
-  double max_difference_px = 2.0;  ///< neighbours that differ by more do not count
+  double max_difference_px = 1.5;  ///< neighbours that differ by more do not count
 };
 
 /// In place; NaN pixels stay NaN and do not count. left: CV_8UC1 or CV_8UC3 of the same size.

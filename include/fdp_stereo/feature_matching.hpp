@@ -14,13 +14,13 @@ enum class FeatureDetector { kSift, kOrb, kFastCensus };
 
 /// Stage 1: features of both views and their matches (paper 3.2, eq. 1 and 10).
 struct FeatureMatchingParams {
-  FeatureDetector detector = FeatureDetector::kSift;
-  double max_ratio = 0.6;              ///< MD0 / MD1 of eq. (10); a match above is dropped
-  double max_row_difference_px = 1.0;  ///< |v_p - v_q|; a rectified pair has its matches on the row
+  FeatureDetector detector = FeatureDetector::kFastCensus;
+  double max_ratio = 0.8;              ///< MD0 / MD1 of eq. (10); a match above is dropped
+  double max_row_difference_px = 4.0;  ///< |v_p - v_q|; a rectified pair has its matches on the row
   bool mutual_check = true;            ///< p must also be the best match of q
   double max_scale_ratio = 1.5;  ///< of the feature sizes of both views, >= 1; 0 = no check (kFastCensus has one size)
   bool refine = true;            ///< both coordinates by least squares on the grey patches (Lucas-Kanade)
-  int max_features = 4000;       ///< per view, strongest first
+  int max_features = 1500;       ///< per view, strongest first
 };
 
 struct FeatureMatching {

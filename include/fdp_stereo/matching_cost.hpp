@@ -27,11 +27,11 @@ struct MatchingCostParams {
   int scales = 1;                                         ///< census scales (eq. 7): 1 to 3
   std::array<double, 3> scale_weights = {0.7, 0.2, 0.1};  ///< w_i of eq. (7); divided by their sum over the scales used
   std::array<double, 3> scale_sigmas_px = {0.0, 1.0, 2.0};  ///< Gaussian blur of each scale
-  double alpha = 0.8;                                       ///< eq. (8): share of the gradient
-  double lambda_rho = 10.0;                                 ///< eq. (9)
-  double lambda_census = 30.0;                              ///< eq. (9)
+  double alpha = 1.0;                                       ///< eq. (8): share of the gradient
+  double lambda_rho = 4.0;                                  ///< eq. (9)
+  double lambda_census = 15.0;                              ///< eq. (9)
   double lambda_ad = 10.0;                                  ///< eq. (6)
-  double rho_weight = 1.0;  ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
+  double rho_weight = 0.7;  ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
   CostBorder border = CostBorder::kRepeatDisparity;
 };
 

@@ -25,6 +25,7 @@
 
 namespace fdp_stereo {
 
+/// As it stands, this is the preset "fast".
 struct PipelineParams {
   DisparityRange search;
   int threads = 0;              ///< 0 = all cores
@@ -54,6 +55,9 @@ struct EnumRef {
   std::function<void(int)> set;
 };
 
+/// When a person who tunes by hand meets a parameter: rqt shows the steps in this order, the experts' ones closed.
+enum class TuningStep { kSearch, kSmoothness, kFilters, kSeeds, kNode, kExpert };
+
 /// One parameter: where it lives, what it may be, what it does. The one list that YAML, ROS, --help and the
 /// docs are made from.
 struct ParamRef {
@@ -63,33 +67,59 @@ struct ParamRef {
   double max = 0.0;
   std::string unit;      ///< "" where there is none
   std::string text;      ///< one sentence: the effect
-  std::string ros_name;  ///< name in dynamic_reconfigure
+  std::string ros_name;  ///< name in ROS; the key's place may be taken by it everywhere
+  TuningStep step = TuningStep::kExpert;
 };
 
 /// Every parameter of `params`, in the order of the pipeline. The references live as long as `params`.
 std::vector<ParamRef> paramList(PipelineParams& params);
 
+/// The parameter with this key or ROS name; nullptr where there is none.
+const ParamRef* findParam(const std::vector<ParamRef>& refs, const std::string& name);
+/// What to write in place of a name that is in no list: the nearest one, or the successor of one of stereo_image_proc.
+std::string adviceFor(const std::vector<ParamRef>& refs, const std::string& unknown);
+
+/// False for real numbers alone.
+bool isWhole(const ParamRef& ref);
+/// The value as a number: true is 1, a choice is the index of its name.
+double toNumber(const ParamRef& ref);
+/// The reverse; the number must be allowed.
+void setFromNumber(const ParamRef& ref, double number);
 /// The value as text: "true", "12", "0.5", "rho_census".
 std::string toString(const ParamRef& ref);
-/// Sets one value. Throws std::invalid_argument naming key, value and what is allowed.
+/// Sets one value; a choice by its name or index. Throws std::invalid_argument naming key, value and what is allowed.
 void setFromString(const ParamRef& ref, const std::string& text);
-/// Sets by key; an unknown key throws std::invalid_argument and names the nearest one.
-void setParam(PipelineParams& params, const std::string& key, const std::string& text);
-/// "key=value".
+/// Sets by key or ROS name; an unknown one throws std::invalid_argument with the nearest.
+void setParam(PipelineParams& params, const std::string& name, const std::string& text);
+/// "name=value".
 void setParam(PipelineParams& params, const std::string& assignment);
 
 /// Throws std::invalid_argument naming the first key whose value is outside its range, or values that exclude each
 /// other.
 void validate(const PipelineParams& params);
 
-/// Reads YAML (nested maps or dotted keys) over `params`; `name` is used in messages. Throws std::invalid_argument.
+/// One value of a YAML text.
+struct NamedText {
+  std::string name;  ///< dotted where the maps are nested
+  std::string text;
+  int line = 0;
+};
+/// The values in YAML: nested maps, dotted keys, or a node's parameters as `rosparam dump` and `dynparam dump` write
+/// them. `name` is used in messages. Throws std::invalid_argument.
+std::vector<NamedText> readYaml(const std::string& text, const std::string& name);
+std::vector<NamedText> readYamlFile(const std::string& path);
+/// Reads YAML over `params`. `preset: NAME` in it comes first; the parameters of the node are passed over. Throws
+/// std::invalid_argument and changes nothing where a key or value is not right.
 void loadYaml(PipelineParams& params, const std::string& text, const std::string& name);
 /// Every parameter as YAML that loadYaml() takes.
 std::string toYaml(const PipelineParams& params);
 
 /// Names of the presets built in from config/*.yaml: "fast", "paper", ...
 std::vector<std::string> presetNames();
+bool isPreset(const std::string& name);
 /// A built-in preset by name, or a YAML file by path. Throws std::invalid_argument naming what exists.
 PipelineParams loadPreset(const std::string& name_or_file);
+/// Changes to a preset and keeps what camera and machine ask for: the stages search and pipeline.
+void usePreset(PipelineParams& params, const std::string& name);
 
 }  // namespace fdp_stereo

@@ -12,7 +12,7 @@ namespace fdp_stereo {
 /// Seeds from a first, rough matching of the pair, and how they are spread. They lie wherever there is texture, not at
 /// corners alone, so that their surfaces reach into the places that have none.
 struct QuasiDenseParams {
-  bool enabled = false;
+  bool enabled = true;
   int row_step = 3;     ///< every row_step-th row is matched, >= 1
   int spacing_px = 6;   ///< from seed to seed along a row, >= 1; between rows rounded down to matched ones
   double gamma = 20.0;  ///< as DisparityPropagationParams::gamma, of the surface form

@@ -8,7 +8,7 @@ namespace fdp_stereo {
 
 /// Stage 8b: removes connected regions (4-neighbours, steps up to max_difference_px) smaller than max_size px.
 struct SpeckleFilterParams {
-  int max_size = 0;  ///< px; 0 = off
+  int max_size = 60;  ///< px; 0 = off
   double max_difference_px = 1.0;
 };
 

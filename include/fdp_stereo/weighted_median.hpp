@@ -8,9 +8,9 @@ namespace fdp_stereo {
 
 /// Stage 8d: median of the disparities around a pixel, weighted by colour similarity.
 struct WeightedMedianParams {
-  int radius = 1;             ///< px; 0 = off
-  double gamma = 10.0;        ///< weight exp(-|dI|_1 / gamma), as eq. (11); 0 = plain median
-  double min_range_px = 0.0;  ///< only where the disparities of the 3 x 3 px around differ by more; 0 = everywhere
+  int radius = 3;             ///< px; 0 = off
+  double gamma = 30.0;        ///< weight exp(-|dI|_1 / gamma), as eq. (11); 0 = plain median
+  double min_range_px = 1.0;  ///< only where the disparities of the 3 x 3 px around differ by more; 0 = everywhere
   bool only_filled = false;   ///< only on the pixels of the mask
 };
 

@@ -28,17 +28,20 @@ struct NodeParams {
   double seeds_wait_s = 0.0;           ///< a pair waits at most this long for seeds of its time
 };
 
+/// The preset of a node that is told nothing.
+constexpr char kDefaultPreset[] = "fast";
+/// In place of a preset's name where the values are those of none.
+constexpr char kCustomPreset[] = "custom";
+
 /// One consistent set: a frame is processed with one of them, whole.
 struct NodeSettings {
   PipelineParams pipeline;
   NodeParams node;
-  unsigned revision = 0;  ///< counts the edits
+  std::string preset = kDefaultPreset;  ///< whose values the pipeline has, or kCustomPreset
+  unsigned revision = 0;                ///< counts the edits
 };
 
-/// The preset of a node that is told nothing.
-constexpr char kDefaultPreset[] = "fast";
-
-/// Every parameter that can be edited live: the node's, then paramList(). The references live as long as `settings`.
+/// Every parameter that can be edited live: paramList(), then the node's. The references live as long as `settings`.
 std::vector<ParamRef> liveParamList(NodeSettings& settings);
 
 /// Throws std::invalid_argument as validate() of the pipeline does.
@@ -48,14 +51,20 @@ void validate(const NodeSettings& settings);
 void toConfig(const NodeSettings& settings, dynamic_reconfigure::Config& config);
 
 /// `current` with the values of `edits`; values outside their range are clamped; values that do not go together are
-/// left as they were. Each correction adds a line to `messages`. The revision grows where a value changed.
+/// left as they were. Each correction adds a line to `messages`, all unknown names add one. A preset among the edits is
+/// loaded first and keeps the search range, what concerns the machine, and the node. The revision grows where a value
+/// changed.
 NodeSettings applyConfig(const dynamic_reconfigure::Config& edits, const NodeSettings& current,
                          std::vector<std::string>& messages);
 
-/// The same from a private namespace of the parameter server: flat ROS names, or the maps of a YAML preset
-/// (stage: {name: value}); choices by name or index. Names in `others` are not ours to judge.
+/// The same from a private namespace of the parameter server: ROS names or keys, flat or in maps as in a YAML preset;
+/// choices by name or index. Names in `others` are not ours to judge.
 NodeSettings applyRosparam(const XmlRpc::XmlRpcValue& values, const NodeSettings& current,
                            const std::vector<std::string>& others, std::vector<std::string>& messages);
+
+/// The same from a YAML file or text.
+NodeSettings applyYaml(const std::vector<NamedText>& values, const NodeSettings& current,
+                       const std::vector<std::string>& others, std::vector<std::string>& messages);
 
 /// cfg/Disparity.cfg as the list of parameters and the default preset define it.
 std::string reconfigureFile();

@@ -15,12 +15,11 @@
 namespace fdp_stereo {
 namespace {
 
-/// Names, groups and flags as the tools of dynamic_reconfigure expect them, with the values of `settings`.
-dynamic_reconfigure::Config completeConfig(const NodeSettings& settings) {
+/// Groups and their states as the cfg file has them.
+std::vector<dynamic_reconfigure::GroupState> initialGroups() {
   dynamic_reconfigure::Config config;
   DisparityConfig::__getDefault__().__toMessage__(config);
-  toConfig(settings, config);
-  return config;
+  return config.groups;
 }
 
 /// True where `name` has another value in `known`, or none.
@@ -30,7 +29,7 @@ bool isNew(const Entries& known, const typename Entries::value_type& entry) {
                       [&](const auto& k) { return k.name == entry.name && k.value == entry.value; });
 }
 
-/// The numbers and flags of a namespace of the parameter server.
+/// The numbers, flags and words of a namespace of the parameter server.
 dynamic_reconfigure::Config storedConfig(const XmlRpc::XmlRpcValue& const_values) {
   dynamic_reconfigure::Config config;
   XmlRpc::XmlRpcValue values = const_values;  // its conversions are not const
@@ -45,6 +44,7 @@ dynamic_reconfigure::Config storedConfig(const XmlRpc::XmlRpcValue& const_values
     if (type == XmlRpc::XmlRpcValue::TypeBoolean) append(config.bools, name, static_cast<bool>(value));
     if (type == XmlRpc::XmlRpcValue::TypeInt) append(config.ints, name, static_cast<int>(value));
     if (type == XmlRpc::XmlRpcValue::TypeDouble) append(config.doubles, name, static_cast<double>(value));
+    if (type == XmlRpc::XmlRpcValue::TypeString) append(config.strs, name, static_cast<std::string>(value));
   }
   return config;
 }
@@ -71,7 +71,7 @@ void waitForPredecessor(const std::string& service) {
 
 ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_node, const std::vector<std::string>& others,
                                      Report report)
-    : node_(private_node), report_(std::move(report)) {
+    : node_(private_node), report_(std::move(report)), groups_(initialGroups()) {
   description_ = node_.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node_.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
   adopt(loadInitial(others));
@@ -87,23 +87,39 @@ std::shared_ptr<const NodeSettings> ReconfigureServer::settings() const {
 
 NodeSettings ReconfigureServer::loadInitial(const std::vector<std::string>& others) {
   NodeSettings settings;
-  const std::string preset = node_.param<std::string>("preset", kDefaultPreset);
-  try {
-    settings.pipeline = loadPreset(preset);
-  } catch (const std::exception& error) {
-    report_("~preset: " + std::string(error.what()) + lookedIn(preset) + "; using " + kDefaultPreset);
-    settings.pipeline = loadPreset(kDefaultPreset);
-  }
-  XmlRpc::XmlRpcValue values;
-  if (!node_.getParam("", values)) return settings;
-  written_ = storedConfig(values);
   std::vector<std::string> messages;
   std::vector<std::string> known = others;
-  known.emplace_back("preset");
-  settings = applyRosparam(values, settings, known, messages);
+  known.insert(known.end(), {"preset", "params"});
+  const std::string preset = node_.param<std::string>("preset", kDefaultPreset);
+  try {
+    if (preset != kCustomPreset) settings.pipeline = loadPreset(preset);
+    if (preset != kCustomPreset && !isPreset(preset))
+      settings = applyYaml(readYamlFile(preset), settings, known, messages);
+  } catch (const std::exception& error) {
+    report_("~preset: " + std::string(error.what()) + lookedIn(preset) + "; using " + kDefaultPreset);
+    settings = {};
+  }
+  try {
+    const std::vector<NamedText> params = readYaml(node_.param<std::string>("params", ""), "~params");
+    settings = applyYaml(params, settings, known, messages);
+  } catch (const std::exception& error) {
+    report_(std::string(error.what()) + "; ~params has no effect");
+  }
+  XmlRpc::XmlRpcValue values;
+  if (node_.getParam("", values)) {
+    written_ = storedConfig(values);
+    settings = applyRosparam(values, settings, known, messages);
+  }
   for (const std::string& message : messages) report_(message);
   settings.revision = 0;
   return settings;
+}
+
+dynamic_reconfigure::Config ReconfigureServer::completeConfig(const NodeSettings& settings) const {
+  dynamic_reconfigure::Config config;
+  toConfig(settings, config);
+  config.groups = groups_;
+  return config;
 }
 
 bool ReconfigureServer::onSetParameters(dynamic_reconfigure::Reconfigure::Request& request,
@@ -111,6 +127,11 @@ bool ReconfigureServer::onSetParameters(dynamic_reconfigure::Reconfigure::Reques
   std::vector<std::string> messages;
   const NodeSettings edited = applyConfig(request.config, *settings(), messages);
   for (const std::string& message : messages) report_(message);
+  for (const auto& wanted : request.config.groups) {
+    for (auto& group : groups_) {
+      if (group.name == wanted.name) group.state = wanted.state;
+    }
+  }
   adopt(edited);
   response.config = completeConfig(edited);
   return true;
@@ -135,6 +156,9 @@ void ReconfigureServer::writeBack(const dynamic_reconfigure::Config& values) {
   }
   for (const auto& entry : values.doubles) {
     if (isNew(written_.doubles, entry)) node_.setParam(entry.name, entry.value);
+  }
+  for (const auto& entry : values.strs) {  // "custom" would hide the name of a file
+    if (entry.value != kCustomPreset && isNew(written_.strs, entry)) node_.setParam(entry.name, entry.value);
   }
   written_ = values;
 }

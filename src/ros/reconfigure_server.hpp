@@ -22,8 +22,8 @@ class ReconfigureServer {
   /// Says what had to be corrected.
   using Report = std::function<void(const std::string& message)>;
 
-  /// Loads `~preset`, then the private parameters over it, and writes the result back. `others`: private parameters
-  /// that belong to somebody else.
+  /// Loads `~preset`, the YAML text `~params` over it and the private parameters over both, and writes the result back.
+  /// `others`: private parameters that belong to somebody else.
   ReconfigureServer(const ros::NodeHandle& private_node, const std::vector<std::string>& others, Report report);
 
   /// The newest set; it never changes once handed out.
@@ -33,6 +33,8 @@ class ReconfigureServer {
   bool onSetParameters(dynamic_reconfigure::Reconfigure::Request& request,
                        dynamic_reconfigure::Reconfigure::Response& response);
   NodeSettings loadInitial(const std::vector<std::string>& others);
+  /// Names, groups and flags as the tools of dynamic_reconfigure expect them.
+  dynamic_reconfigure::Config completeConfig(const NodeSettings& settings) const;
   void adopt(const NodeSettings& settings);
   /// Writes the values that the parameter server does not have yet.
   void writeBack(const dynamic_reconfigure::Config& values);
@@ -43,6 +45,7 @@ class ReconfigureServer {
   mutable std::mutex mutex_;
   std::shared_ptr<const NodeSettings> settings_;
   dynamic_reconfigure::Config written_;
+  std::vector<dynamic_reconfigure::GroupState> groups_;  ///< whether rqt shows them open
   ros::Publisher description_;
   ros::Publisher updates_;
   ros::ServiceServer service_;

@@ -2,28 +2,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <locale>
+#include <sstream>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <ros/node_handle.h>
 
+#include "fdp_stereo/pipeline_params.hpp"
+
 namespace fdp_stereo {
 
-/// Private parameters that are read once, at the start. Remembers their names, so that whoever judges the others knows
-/// them.
+/// Private parameters that are read once, at the start; those that are not set come from the YAML text `~params`, if
+/// it has them. Remembers their names, so that whoever judges the others knows them.
 class StartParams {
  public:
-  explicit StartParams(ros::NodeHandle private_node) : node_(std::move(private_node)) {}
+  explicit StartParams(ros::NodeHandle private_node) : node_(std::move(private_node)) {
+    try {
+      given_ = readYaml(node_.param<std::string>("params", ""), "~params");
+    } catch (const std::invalid_argument&) {  // which ReconfigureServer reports
+    }
+  }
 
   template <typename Value>
   Value param(const std::string& name, const Value& fallback) {
     names_.push_back(name);
+    for (const NamedText& given : given_) {
+      if (given.name == name && !node_.hasParam(name)) set<Value>(given);
+    }
     return node_.param(name, fallback);
   }
   const std::vector<std::string>& names() const { return names_; }
 
  private:
+  template <typename Value>
+  void set(const NamedText& given) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      node_.setParam(given.name, given.text);
+    } else {
+      std::istringstream in(given.text);
+      in.imbue(std::locale::classic());
+      Value value{};
+      if (in >> std::boolalpha >> value) node_.setParam(given.name, value);
+    }
+  }
+
   ros::NodeHandle node_;
+  std::vector<NamedText> given_;
   std::vector<std::string> names_;
 };
 

@@ -31,6 +31,7 @@ CostVolume constantVolume(cv::Size size, DisparityRange range, CostVolume::Depth
 
 DisparityPropagationParams windowParams(int window, double gamma) {
   DisparityPropagationParams params;
+  params.image_seeds = true;
   params.form = PropagationForm::kWindow;
   params.window = window;
   params.gamma = gamma;
@@ -132,6 +133,7 @@ TEST(DisparityPropagation, ImageSeedsCanStayOut) {
 
 DisparityPropagationParams surfaceParams() {
   DisparityPropagationParams params;
+  params.image_seeds = true;
   params.form = PropagationForm::kSurface;
   return params;
 }

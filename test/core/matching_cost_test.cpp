@@ -20,6 +20,11 @@ constexpr double kThetaError = 6e-4;
 MatchingCostParams paramsOf(MatchingCostType type, int scales = 1) {
   MatchingCostParams params;
   params.type = type;
+  params.census = {9, 7};
+  params.alpha = 0.8;
+  params.lambda_rho = 10.0;
+  params.lambda_census = 30.0;
+  params.rho_weight = 1.0;
   params.scales = scales;
   return params;
 }

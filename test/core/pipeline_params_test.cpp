@@ -25,13 +25,6 @@ void expectContains(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << text << "' lacks '" << part << "'";
 }
 
-double numberOf(const ParamRef& ref) {
-  if (const auto* choice = std::get_if<EnumRef>(&ref.value)) return choice->get();
-  if (const auto* flag = std::get_if<bool*>(&ref.value)) return **flag ? 1.0 : 0.0;
-  if (const auto* integer = std::get_if<int*>(&ref.value)) return **integer;
-  return *std::get<double*>(ref.value);
-}
-
 TEST(ParamList, HasUniqueKeysWithRangeAndText) {
   PipelineParams params;
   std::set<std::string> keys;
@@ -41,8 +34,8 @@ TEST(ParamList, HasUniqueKeysWithRangeAndText) {
     EXPECT_TRUE(ros_names.insert(ref.ros_name).second) << ref.ros_name;
     EXPECT_EQ(ref.ros_name.find('.'), std::string::npos) << ref.ros_name;
     EXPECT_LT(ref.min, ref.max) << ref.key;
-    EXPECT_GE(numberOf(ref), ref.min) << ref.key;
-    EXPECT_LE(numberOf(ref), ref.max) << ref.key;
+    EXPECT_GE(toNumber(ref), ref.min) << ref.key;
+    EXPECT_LE(toNumber(ref), ref.max) << ref.key;
     ASSERT_FALSE(ref.text.empty()) << ref.key;
     EXPECT_EQ(ref.text.back(), '.') << ref.key;
   }
@@ -57,6 +50,14 @@ TEST(ParamList, StagesAreContiguous) {
     if (next == stage) continue;
     EXPECT_TRUE(finished.insert(next).second) << next << " comes twice";
     stage = next;
+  }
+}
+
+TEST(ParamList, RangesSuitASliderOfAHundredSteps) {
+  PipelineParams params;
+  for (const ParamRef& ref : paramList(params)) {
+    if (isWhole(ref) || ref.min <= 0.0) continue;
+    EXPECT_LE(ref.max / ref.min, 1000.0) << ref.key;
   }
 }
 
@@ -75,12 +76,25 @@ TEST(SetParam, ReachesTheField) {
   PipelineParams params;
   setParam(params, "search.min_disparity=-12");
   setParam(params, "matching_cost.type", "ad_census");
-  setParam(params, "matching_cost.scale_weight_2", "0.25");
+  setParam(params, " speckle_filter.max_size = 3 ");
   setParam(params, "hole_filling.enabled=true");
   EXPECT_EQ(params.search.min, -12);
   EXPECT_EQ(params.matching_cost.type, MatchingCostType::kAdCensus);
-  EXPECT_DOUBLE_EQ(params.matching_cost.scale_weights[1], 0.25);
+  EXPECT_EQ(params.speckle_filter.max_size, 3);
   EXPECT_TRUE(params.hole_filling.enabled);
+}
+
+TEST(SetParam, TakesRosNamesAndIndicesOfChoicesToo) {
+  PipelineParams params;
+  setParam(params, "disparity_range=100");
+  setParam(params, "speckle_size", "33");
+  setParam(params, "optimizer_type", "0");
+  EXPECT_EQ(params.search.count, 100);
+  EXPECT_EQ(params.speckle_filter.max_size, 33);
+  EXPECT_EQ(params.optimizer, OptimizerType::kWinnerTakesAll);
+  for (const char* index : {"-1", "3", "1.0"}) {
+    expectContains(messageOf([&] { setParam(params, "optimizer_type", index); }), "one of winner_takes_all");
+  }
 }
 
 TEST(SetParam, EveryEntryTakesBothEndsOfItsRangeAndNothingBeyond) {
@@ -90,11 +104,11 @@ TEST(SetParam, EveryEntryTakesBothEndsOfItsRangeAndNothingBeyond) {
     for (const double end : {ref.min, ref.max}) {
       setParam(params, ref.key,
                std::holds_alternative<int*>(ref.value) ? std::to_string(static_cast<int>(end)) : std::to_string(end));
-      EXPECT_DOUBLE_EQ(numberOf(ref), end) << ref.key;
+      EXPECT_DOUBLE_EQ(toNumber(ref), end) << ref.key;
     }
     expectContains(messageOf([&] { setParam(params, ref.key, std::to_string(static_cast<int>(ref.max) + 1)); }),
                    ref.key + " = ");
-    EXPECT_DOUBLE_EQ(numberOf(ref), ref.max) << "a refused value must not stick: " << ref.key;
+    EXPECT_DOUBLE_EQ(toNumber(ref), ref.max) << "a refused value must not stick: " << ref.key;
   }
 }
 
@@ -117,6 +131,18 @@ TEST(SetParam, UnknownKeyNamesTheNearest) {
   EXPECT_EQ(messageOf([&] { setParam(params, "matching_cost.alhpa=1"); }),
             "unknown parameter 'matching_cost.alhpa', did you mean 'matching_cost.alpha'?");
   expectContains(messageOf([&] { setParam(params, "semi_globl.p1=1"); }), "'semi_global.p1'");
+  expectContains(messageOf([&] { setParam(params, "disparity_rnage=1"); }), "did you mean 'disparity_range'?");
+}
+
+TEST(SetParam, NamesTheSuccessorsOfStereoImageProc) {
+  PipelineParams params;
+  for (const char* name : {"P1", "P2", "correlation_window_size", "stereo_algorithm"}) {
+    const std::string advice = adviceFor(paramList(params), name);
+    expectContains(advice, "use ");
+    const std::string successor = advice.substr(4, advice.find_first_of(", ", 4) - 4);
+    EXPECT_NE(findParam(paramList(params), successor), nullptr) << advice;
+  }
+  expectContains(messageOf([&] { setParam(params, "texture_threshold=10"); }), "'texture_threshold', not needed here");
 }
 
 TEST(Validate, AcceptsTheDefaultsAndEveryPreset) {
@@ -144,7 +170,6 @@ TEST(Validate, RefusesValuesThatExcludeEachOther) {
   expectContains(refused("matching_cost.census_width=11", "matching_cost.census_height=7"), "2 to 65 pixels");
   expectContains(refused("matching_cost.census_width=1", "matching_cost.census_height=1"), "2 to 65 pixels");
   expectContains(refused("semi_global.p1=3", "semi_global.p2=2"), "semi_global.p1 = 3");
-  expectContains(refused("matching_cost.scales=1", "matching_cost.scale_weight_1=0"), "scale_weight");
 }
 
 TEST(Yaml, RoundTripsEveryParameter) {
@@ -160,7 +185,7 @@ TEST(Yaml, RoundTripsEveryParameter) {
   const std::vector<ParamRef> expected = paramList(params);
   const std::vector<ParamRef> actual = paramList(loaded);
   for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_EQ(numberOf(actual[i]), numberOf(expected[i])) << actual[i].key;
+    EXPECT_EQ(toNumber(actual[i]), toNumber(expected[i])) << actual[i].key;
 }
 
 TEST(Yaml, TakesNestedAndDottedKeysAndKeepsTheRest) {
@@ -172,6 +197,36 @@ TEST(Yaml, TakesNestedAndDottedKeysAndKeepsTheRest) {
   EXPECT_DOUBLE_EQ(params.matching_cost.alpha, 0.5);
   EXPECT_NO_THROW(loadYaml(params, "", "empty"));
   EXPECT_NO_THROW(loadYaml(params, "# nothing\n", "comment"));
+}
+
+/// What `rosparam dump` and `dynparam dump` write of a tuned node.
+TEST(Yaml, TakesTheDumpOfANode) {
+  const std::string values =
+      "  disparity_range: 96\n  hole_filling_enabled: true\n  optimizer_type: 0\n  semi_global_p2: 2.5\n"
+      "  max_rate: 5.0\n  seeds_points_trust: 0.9\n  preset: custom\n";
+  const std::string rosparam = values + "  queue_size: 5\n  approximate_sync: false\n  params: 'search: {x: 1}'\n";
+  const std::string dynparam = "!!python/object/new:dynamic_reconfigure.encoding.Config\ndictitems:\n" + values +
+                               "  groups: !!python/object/new:dynamic_reconfigure.encoding.Config\n    dictitems:\n"
+                               "      groups: {}\n      id: 0\n    state: []\nstate: []\n";
+  for (const std::string& dump : {rosparam, dynparam}) {
+    PipelineParams params;
+    loadYaml(params, dump, "dump");
+    EXPECT_EQ(params.search.count, 96);
+    EXPECT_TRUE(params.hole_filling.enabled);
+    EXPECT_EQ(params.optimizer, OptimizerType::kWinnerTakesAll);
+    EXPECT_DOUBLE_EQ(params.semi_global.p2, 2.5);
+  }
+}
+
+TEST(Yaml, APresetInItComesFirst) {
+  PipelineParams params;
+  params.search.count = 33;
+  params.threads = 2;
+  loadYaml(params, "semi_global.p1: 0.7\npreset: paper\n", "based");
+  EXPECT_EQ(params.matching_cost.scales, 3);
+  EXPECT_DOUBLE_EQ(params.semi_global.p1, 0.7);
+  EXPECT_EQ(params.search.count, 33) << "camera and machine decide";
+  EXPECT_EQ(params.threads, 2);
 }
 
 TEST(Yaml, ErrorsNameFileLineAndKey) {
@@ -201,6 +256,22 @@ TEST(Yaml, SurvivesHostileInput) {
   EXPECT_THROW(loadYaml(params, std::string(2U << 20, 'x'), "huge"), std::invalid_argument);
   EXPECT_THROW(loadYaml(params, std::string(10000, '['), "deep"), std::invalid_argument);
   EXPECT_THROW(loadYaml(params, "a: !!python/object/apply:os.system ['true']\n", "tag"), std::invalid_argument);
+}
+
+TEST(Preset, FastIsTheDefault) { EXPECT_EQ(toYaml(loadPreset("fast")), toYaml(PipelineParams{})); }
+
+TEST(Preset, FilesListOnlyWhatDiffersFromTheDefaults) {
+  for (const char* file : {"config/fast", "config/accurate", "config/paper", "benchmark/localexp_reference"}) {
+    PipelineParams defaults;
+    const std::vector<ParamRef> refs = paramList(defaults);
+    for (const NamedText& line : readYamlFile(FDP_STEREO_SOURCE_DIR "/" + std::string(file) + ".yaml")) {
+      const ParamRef* ref = findParam(refs, line.name);
+      ASSERT_NE(ref, nullptr) << file << ": " << line.name;
+      const double before = toNumber(*ref);
+      setFromString(*ref, line.text);
+      EXPECT_NE(toNumber(*ref), before) << file << ":" << line.line << ": " << line.name << " is the default";
+    }
+  }
 }
 
 TEST(Preset, PaperHasThePublishedValuesAndNoLaterStage) {

@@ -44,14 +44,14 @@ double shareAt(const FrameOutput& output, double disparity) {
   return cv::countNonZero(cv::abs(map - disparity) < 0.5) / static_cast<double>(map.total());
 }
 
-/// The core's result for the same pixels, unseen ones left out, in published units.
+/// The core's result for the same pixels, in published units.
 cv::Mat coreResult(const cv::Mat& left, const cv::Mat& right, float invalid) {
   Pipeline pipeline(settings().pipeline);
   cv::Mat map = pipeline.run(left, right).disparity;
   for (int y = 0; y < map.rows; ++y) {
     for (int x = 0; x < map.cols; ++x) {
       float& d = map.at<float>(y, x);
-      if (!(static_cast<float>(x) - d >= 0.0F)) d = invalid;
+      if (std::isnan(d)) d = invalid;
     }
   }
   return map;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "params_ros.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -17,10 +18,13 @@ namespace {
 using dynamic_reconfigure::Config;
 using dynamic_reconfigure::ConfigTools;
 
-NodeSettings initial() {
-  NodeSettings settings;
-  settings.pipeline = loadPreset(kDefaultPreset);
-  return settings;
+NodeSettings initial() { return {}; }
+
+/// All that can be edited.
+Config configOf(const NodeSettings& settings) {
+  Config config;
+  toConfig(settings, config);
+  return config;
 }
 
 TEST(ApplyConfig, TakesValuesOfEveryKind) {
@@ -42,10 +46,8 @@ TEST(ApplyConfig, TakesValuesOfEveryKind) {
 }
 
 TEST(ApplyConfig, AnEditThatChangesNothingIsNoRevision) {
-  Config edits;
-  toConfig(initial(), edits);
   std::vector<std::string> messages;
-  EXPECT_EQ(applyConfig(edits, initial(), messages).revision, 0U);
+  EXPECT_EQ(applyConfig(configOf(initial()), initial(), messages).revision, 0U);
   EXPECT_TRUE(messages.empty());
 }
 
@@ -83,13 +85,13 @@ TEST(ApplyConfig, WhatDoesNotGoTogetherStaysAsItWas) {
 
 TEST(ApplyConfig, OrderOfEditsThatNeedEachOtherDoesNotMatter) {
   Config edits;  // p2 must not be below p1
-  ConfigTools::appendParameter(edits, "semi_global_p1", 50.0);
-  ConfigTools::appendParameter(edits, "semi_global_p2", 60.0);
+  ConfigTools::appendParameter(edits, "semi_global_p1", 4.0);
+  ConfigTools::appendParameter(edits, "semi_global_p2", 6.0);
   ConfigTools::appendParameter(edits, "semi_global_paths", 7);
   std::vector<std::string> messages;
   const NodeSettings settings = applyConfig(edits, initial(), messages);
-  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, 50.0);
-  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 60.0);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, 4.0);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 6.0);
   EXPECT_EQ(settings.pipeline.semi_global.paths, 8);
   EXPECT_EQ(messages.size(), 1U);
 }
@@ -107,11 +109,66 @@ TEST(ApplyConfig, DepthLimitsGoTogether) {
 TEST(ApplyConfig, NamesWhatItDoesNotKnow) {
   Config edits;
   ConfigTools::appendParameter(edits, "correlation_window_size", 15);
-  ConfigTools::appendParameter(edits, "preset", std::string("fast"));
+  ConfigTools::appendParameter(edits, "P1", 200.0);
+  ConfigTools::appendParameter(edits, "hole_fillnig_enabled", true);
+  ConfigTools::appendParameter(edits, "stereo_algorithm", std::string("bm"));
   std::vector<std::string> messages;
   EXPECT_EQ(applyConfig(edits, initial(), messages).revision, 0U);
-  ASSERT_EQ(messages.size(), 2U);
-  EXPECT_NE(messages[0].find("correlation_window_size"), std::string::npos);
+  ASSERT_EQ(messages.size(), 1U) << "one message for all";
+  for (const char* part :
+       {"'correlation_window_size' (use matching_cost_census_width", "'P1' (use semi_global_p1",
+        "'hole_fillnig_enabled' (did you mean 'hole_filling_enabled'?)", "'stereo_algorithm' (use"}) {
+    EXPECT_NE(messages[0].find(part), std::string::npos) << messages[0];
+  }
+}
+
+TEST(ApplyConfig, APresetKeepsSearchMachineAndNode) {
+  NodeSettings before = initial();
+  before.pipeline.search = {-4, 48};
+  before.pipeline.threads = 3;
+  before.node.max_rate_hz = 5.0;
+  Config edits;
+  ConfigTools::appendParameter(edits, "preset", std::string("accurate"));
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, before, messages);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_EQ(settings.preset, "accurate");
+  EXPECT_EQ(settings.revision, 1U);
+  EXPECT_EQ(settings.pipeline.optimizer, OptimizerType::kLocalExpansion);
+  EXPECT_EQ(settings.pipeline.search.min, -4);
+  EXPECT_EQ(settings.pipeline.threads, 3);
+  EXPECT_DOUBLE_EQ(settings.node.max_rate_hz, 5.0);
+}
+
+TEST(ApplyConfig, APresetMayComeWithEditsAndWithAllOldValues) {
+  Config edits = configOf(initial());  // as a client sends that knows no single edits
+  for (auto& entry : edits.strs) entry.value = "accurate";
+  for (auto& entry : edits.ints) {
+    if (entry.name == "disparity_range") entry.value = 77;
+  }
+  std::vector<std::string> messages;
+  const NodeSettings settings = applyConfig(edits, initial(), messages);
+  EXPECT_EQ(settings.preset, "accurate");
+  EXPECT_EQ(settings.pipeline.search.count, 77);
+}
+
+TEST(ApplyConfig, ThePresetIsCustomWhileItsValuesAreChanged) {
+  std::vector<std::string> messages;
+  Config edits;
+  ConfigTools::appendParameter(edits, "semi_global_p1", 1.0);
+  const NodeSettings tuned = applyConfig(edits, initial(), messages);
+  EXPECT_EQ(tuned.preset, kCustomPreset);
+  Config back;
+  ConfigTools::appendParameter(back, "preset", std::string("fast"));
+  EXPECT_EQ(toYaml(applyConfig(back, tuned, messages).pipeline), toYaml(initial().pipeline));
+  Config range;
+  ConfigTools::appendParameter(range, "disparity_range", 99);
+  EXPECT_EQ(applyConfig(range, initial(), messages).preset, "fast");
+  EXPECT_TRUE(messages.empty());
+  Config wrong;
+  ConfigTools::appendParameter(wrong, "preset", std::string("fats"));
+  EXPECT_EQ(applyConfig(wrong, tuned, messages).revision, tuned.revision);
+  EXPECT_EQ(messages.size(), 1U);
 }
 
 TEST(ApplyRosparam, FlatNamesMapsWordsAndNumbers) {
@@ -143,7 +200,45 @@ TEST(ApplyRosparam, KeepsGoodValuesBesideBadOnes) {
   const NodeSettings settings = applyRosparam(values, initial(), {}, messages);
   EXPECT_EQ(settings.pipeline.search.count, initial().pipeline.search.count);
   EXPECT_EQ(settings.pipeline.search.min, 4);
-  ASSERT_EQ(messages.size(), 4U);
+  ASSERT_EQ(messages.size(), 3U);
+  EXPECT_NE(messages[0].find("'hole_filling.enabeld' (did you mean 'hole_filling.enabled'?), 'unknown'"),
+            std::string::npos)
+      << messages[0];
+}
+
+/// A file that `rosparam dump` or `dynparam dump` wrote, given as ~params.
+TEST(ApplyYaml, ADumpSetsPipelineAndNode) {
+  NodeSettings tuned = initial();
+  tuned.pipeline.search = {-16, 96};
+  tuned.pipeline.semi_global.p1 = 1.25;
+  tuned.node.max_depth_m = 12.5;
+  tuned.preset = kCustomPreset;
+  const Config dump = configOf(tuned);
+  std::ostringstream yaml;
+  yaml << "!!python/object/new:dynamic_reconfigure.encoding.Config\ndictitems:\n  groups: {id: 0}\n  queue_size: 5\n";
+  for (const auto& entry : dump.bools) yaml << "  " << entry.name << ": " << (entry.value ? "true" : "false") << "\n";
+  for (const auto& entry : dump.ints) yaml << "  " << entry.name << ": " << entry.value << "\n";
+  for (const auto& entry : dump.doubles) yaml << "  " << entry.name << ": " << entry.value << "\n";
+  for (const auto& entry : dump.strs) yaml << "  " << entry.name << ": " << entry.value << "\n";
+  std::vector<std::string> messages;
+  const NodeSettings loaded =
+      applyYaml(readYaml(yaml.str() + "state: []\n", "dump"), initial(), {"queue_size", "preset"}, messages);
+  EXPECT_TRUE(messages.empty()) << messages.front();
+  EXPECT_EQ(toYaml(loaded.pipeline), toYaml(tuned.pipeline));
+  EXPECT_EQ(loaded.preset, kCustomPreset);
+  EXPECT_DOUBLE_EQ(loaded.node.max_depth_m, 12.5);
+  PipelineParams offline;
+  loadYaml(offline, yaml.str(), "dump");
+  EXPECT_EQ(toYaml(offline), toYaml(tuned.pipeline)) << "the same file is a preset of the tools";
+}
+
+TEST(ApplyYaml, APresetInItComesFirst) {
+  std::vector<std::string> messages;
+  const NodeSettings settings =
+      applyYaml(readYaml("semi_global_p1: 0.7\npreset: paper\n", "based"), initial(), {"preset"}, messages);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_EQ(settings.pipeline.matching_cost.scales, 3);
+  EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, 0.7);
 }
 
 TEST(ApplyRosparam, AnythingButAMapIsNothing) {
@@ -182,6 +277,9 @@ TEST(CfgFile, DefaultsAndRangesAreThoseOfTheList) {
   Config generated = description.dflt;
   Config expected = description.dflt;
   toConfig(settings, expected);
+  std::string preset;
+  EXPECT_TRUE(ConfigTools::getParameter(generated, "preset", preset));
+  EXPECT_EQ(preset, kDefaultPreset);
   EXPECT_EQ(generated.ints.size() + generated.doubles.size() + generated.bools.size(), liveParamList(settings).size());
   EXPECT_EQ(expected.ints.size(), generated.ints.size());
   for (const auto& ref : liveParamList(settings)) {
@@ -201,6 +299,54 @@ TEST(CfgFile, DefaultsAndRangesAreThoseOfTheList) {
       EXPECT_TRUE(ConfigTools::getParameter(description.max, ref.ros_name, whole));
       EXPECT_EQ(whole, static_cast<int>(ref.max)) << ref.ros_name;
     }
+  }
+}
+
+/// As rqt_reconfigure shows it: groups sorted by name, those of type collapse closed where their state is false.
+TEST(CfgFile, WhatOneTunesComesFirst) {
+  auto groups = DisparityConfig::__getDescriptionMessage__().groups;
+  std::sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  Config dflt;
+  DisparityConfig::__getDefault__().__toMessage__(dflt);
+  std::vector<std::string> basic;
+  std::size_t tuned = 0;
+  bool experts = false;
+  for (const auto& group : groups) {
+    if (group.id == 0) {
+      EXPECT_TRUE(group.parameters.empty());
+      continue;
+    }
+    experts = experts || group.type == "collapse";
+    EXPECT_EQ(group.type, experts ? "collapse" : "") << group.name << ": all experts' groups come last";
+    for (const auto& state : dflt.groups) {
+      if (state.name != group.name) continue;
+      EXPECT_EQ(state.state != 0, !experts) << group.name;
+    }
+    if (experts) continue;
+    basic.push_back(group.name);
+    tuned += group.parameters.size();
+  }
+  EXPECT_EQ(basic, (std::vector<std::string>{"basic_1_search", "basic_2_smoothness", "basic_3_filters", "basic_4_seeds",
+                                             "basic_5_node"}));
+  EXPECT_LE(tuned, 25U);
+  EXPECT_GE(tuned, 20U);
+}
+
+TEST(Parameters, RangesSuitASliderOfAHundredSteps) {
+  NodeSettings settings;
+  for (const ParamRef& ref : liveParamList(settings)) {
+    if (isWhole(ref) || ref.min <= 0.0) continue;
+    EXPECT_LE(ref.max / ref.min, 1000.0) << ref.ros_name;
+  }
+}
+
+/// A dump of the node is a preset of the tools, which pass over what belongs to the node.
+TEST(Parameters, ToolsKnowWhatBelongsToTheNode) {
+  NodeSettings settings;
+  for (const ParamRef& ref : liveParamList(settings)) {
+    PipelineParams params;
+    EXPECT_NO_THROW(loadYaml(params, ref.ros_name + ": " + toString(ref), "dump"));
+    EXPECT_NO_THROW(loadYaml(params, ref.key + ": " + toString(ref), "dump"));
   }
 }
 
