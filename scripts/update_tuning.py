@@ -62,8 +62,24 @@ HEAD = """# Choosing good stereo parameters
 
 Every section shows a symptom, the parameter that helps, and the disparity before and after the change; black is no disparity. All
 other parameters are those of the preset `fast`. On a robot, parameters can be changed while the node runs, with
-`rqt_reconfigure`. Their names in ROS have `_` instead of the dot, or are those of stereo_image_proc;
-[parameters.md](parameters.md) lists them all.
+`rqt_reconfigure`. Their names in ROS have `_` instead of the dot, or are those of stereo_image_proc; YAML files and `--set` take
+both. [parameters.md](parameters.md) lists them all.
+
+The window of `rqt_reconfigure` shows what matters first, in the order in which one tunes; the groups below are closed until their
+box is ticked:
+
+| group | what it holds |
+|---|---|
+| `basic_1_search` | `preset`, the range, the scale of the images, the repair of rows |
+| `basic_2_smoothness` | the optimiser and its penalties |
+| `basic_3_filters` | what is removed, filled and smoothed |
+| `basic_4_seeds` | how far seeds are believed |
+| `basic_5_node` | rate and limits of the depth |
+| `expert_01_pipeline`, ... | the rest, stage by stage |
+
+Choose a `preset` there to begin again; it turns to `custom` with the first value that is changed. When the values are good, keep them:
+`rosrun dynamic_reconfigure dynparam dump /stereo/disparity tuned.yaml`. The file is a preset for the tools and `params:=tuned.yaml`
+of `stereo.launch`.
 
 Work in this order: first calibration and rows, then the range, then the matching cost and the penalties, and last what is removed
 and what is filled.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // parameters_doc: prints docs/parameters.md from the list of parameters and the presets.
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
@@ -22,19 +23,30 @@ std::string rangeText(const ParamRef& ref) {
   return text.str();
 }
 
+std::string rosName(const ParamRef& ref) {
+  const std::string name = "`" + ref.ros_name + "`";
+  return ref.step == TuningStep::kExpert ? name : "**" + name + "**";
+}
+
 void printHead() {
   std::cout
       << "# Parameters\n\n"
          "Made by `parameters_doc` from the list in `src/core/params/parameter_list.cpp`; do not edit by hand.\n\n"
-         "A parameter has one key, `stage.name`, everywhere: in YAML (nested or dotted), on the command line as\n"
-         "`--set stage.name=value`, and in ROS under the name in the last column, as a private parameter of the\n"
-         "node and in dynamic_reconfigure. An unknown key is an error that names the nearest one. A value that a\n"
-         "preset leaves out has its default.\n";
+         "A parameter has a key, `stage.name`, and a name in ROS, in the last column. YAML files (keys nested or "
+         "dotted)\n"
+         "and `--set NAME=VALUE` take both, and so do private parameters of the node; dynamic_reconfigure shows the "
+         "name\n"
+         "in ROS, those in bold in its first groups. An unknown name is an error that gives the nearest one. The\n"
+         "defaults are the preset `fast`; the other presets, in `config/`, list what differs. `preset: NAME` in a "
+         "YAML\n"
+         "file begins with another one. What `rosparam dump` and `dynparam dump` write of a node is such a file, too;\n"
+         "the tools pass over what belongs to the node.\n";
 }
 
 void printTable() {
   PipelineParams defaults;
-  const std::vector<std::string> presets = presetNames();
+  std::vector<std::string> presets = presetNames();
+  presets.erase(std::remove(presets.begin(), presets.end(), "fast"), presets.end());
   std::vector<PipelineParams> values;
   for (const std::string& preset : presets) values.push_back(loadPreset(preset));
   std::vector<std::vector<ParamRef>> columns;
@@ -45,7 +57,7 @@ void printTable() {
     const std::size_t dot = refs[i].key.find('.');
     if (refs[i].key.substr(0, dot) != stage) {
       stage = refs[i].key.substr(0, dot);
-      std::cout << "\n## " << stage << "\n\n| name | default |";
+      std::cout << "\n## " << stage << "\n\n| name | default, fast |";
       for (const std::string& preset : presets) std::cout << ' ' << preset << " |";
       std::cout << " allowed | effect | ROS name |\n|---|---|";
       for (std::size_t p = 0; p < presets.size(); ++p) std::cout << "---|";
@@ -53,7 +65,7 @@ void printTable() {
     }
     std::cout << "| `" << refs[i].key.substr(dot + 1) << "` | " << toString(refs[i]) << " |";
     for (const auto& column : columns) std::cout << ' ' << toString(column[i]) << " |";
-    std::cout << ' ' << rangeText(refs[i]) << " | " << refs[i].text << " | `" << refs[i].ros_name << "` |\n";
+    std::cout << ' ' << rangeText(refs[i]) << " | " << refs[i].text << " | " << rosName(refs[i]) << " |\n";
   }
 }
 

@@ -220,13 +220,13 @@ TEST(DisparityNodelet, ALiveEditTakesEffectAndIsWrittenBack) {
   const auto answer = graph.edit([](auto& config) {
     ConfigTools::appendParameter(config, "disparity_range", 20);
     ConfigTools::appendParameter(config, "min_disparity", 99999);
-    ConfigTools::appendParameter(config, "semi_global_paths", 5);
+    ConfigTools::appendParameter(config, "matching_cost_census_width", 8);
   });
   int value = 0;
   ASSERT_TRUE(ConfigTools::getParameter(answer, "min_disparity", value));
   EXPECT_EQ(value, 1024) << "clamped";
-  ASSERT_TRUE(ConfigTools::getParameter(answer, "semi_global_paths", value));
-  EXPECT_EQ(value, 8) << "refused";
+  ASSERT_TRUE(ConfigTools::getParameter(answer, "matching_cost_census_width", value));
+  EXPECT_EQ(value, 5) << "refused";
   graph.edit([](auto& config) { ConfigTools::appendParameter(config, "min_disparity", 2); });
   const auto after = graph.process(goodMessages());
   ASSERT_TRUE(after);

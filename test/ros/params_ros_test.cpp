@@ -87,12 +87,12 @@ TEST(ApplyConfig, OrderOfEditsThatNeedEachOtherDoesNotMatter) {
   Config edits;  // p2 must not be below p1
   ConfigTools::appendParameter(edits, "semi_global_p1", 4.0);
   ConfigTools::appendParameter(edits, "semi_global_p2", 6.0);
-  ConfigTools::appendParameter(edits, "semi_global_paths", 7);
+  ConfigTools::appendParameter(edits, "matching_cost_census_width", 8);
   std::vector<std::string> messages;
   const NodeSettings settings = applyConfig(edits, initial(), messages);
   EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p1, 4.0);
   EXPECT_DOUBLE_EQ(settings.pipeline.semi_global.p2, 6.0);
-  EXPECT_EQ(settings.pipeline.semi_global.paths, 8);
+  EXPECT_EQ(settings.pipeline.matching_cost.census.window_width, 5);
   EXPECT_EQ(messages.size(), 1U);
 }
 
