@@ -16,7 +16,7 @@
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/scaling.hpp"
 #include "images/blind_pixels.hpp"
-#include "refinement/hidden_pixels.hpp"
+#include "fdp_stereo/hidden_pixels.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {

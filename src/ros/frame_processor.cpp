@@ -7,6 +7,7 @@
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/hidden_pixels.hpp"
 #include "fdp_stereo/io.hpp"
 #include "search_range.hpp"
 #include "text.hpp"
@@ -87,6 +88,8 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
       {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
   PipelineResult result = pipelineFor(settings).run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
+  // What both cameras cannot have seen stays unknown though filled: consumers rely on a map that is not fully dense.
+  if (settings.pipeline.hole_filling.enabled) dropHidden(result.disparity);
 
   const std_msgs::Header& header = frame.left->header;
   if (wanted.disparity) {

@@ -15,13 +15,6 @@
 namespace fdp_stereo {
 namespace {
 
-/// Groups and their states as the cfg file has them.
-std::vector<dynamic_reconfigure::GroupState> initialGroups() {
-  dynamic_reconfigure::Config config;
-  DisparityConfig::__getDefault__().__toMessage__(config);
-  return config.groups;
-}
-
 /// True where `name` has another value in `known`, or none.
 template <typename Entries>
 bool isNew(const Entries& known, const typename Entries::value_type& entry) {
@@ -68,6 +61,18 @@ void waitForPredecessor(const std::string& service) {
 }
 
 }  // namespace
+
+std::vector<dynamic_reconfigure::GroupState> initialGroups() {
+  // The defaults of the generated class have every group open; their states are set by the descriptions alone.
+  DisparityConfig config = DisparityConfig::__getDefault__();
+  for (const auto& group : DisparityConfig::__getGroupDescriptions__()) {
+    boost::any top = &config;
+    if (group->id == 0) group->setInitialState(top);
+  }
+  dynamic_reconfigure::Config message;
+  config.__toMessage__(message);
+  return message.groups;
+}
 
 ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_node, const std::vector<std::string>& others,
                                      Report report)

@@ -15,6 +15,9 @@
 
 namespace fdp_stereo {
 
+/// Groups and their states as the cfg file has them.
+std::vector<dynamic_reconfigure::GroupState> initialGroups();
+
 /// The node's side of dynamic_reconfigure. dynamic_reconfigure::Server writes every parameter to the parameter server
 /// at every edit, one call each, which takes some 100 ms with a list as long as ours; this one writes what changed.
 class ReconfigureServer {

@@ -273,7 +273,7 @@ TEST(Pipeline, FilledPixelsHaveNoConfidence) {
 TEST(Pipeline, LargePenaltiesDoNotCoarsenTheCosts) {
   PipelineParams params = paramsOf("fast");
   params.semi_global.p1 = 4.0;
-  params.semi_global.p2 = 60.0;
+  params.semi_global.p2 = 20.0;
   const PipelineResult result = Pipeline(params).run(rendered().left, rendered().right);
   EXPECT_LT(evaluateDisparity(result.disparity, rendered().truth, rendered().visible).bad[4], 25.0);
   EXPECT_EQ(fitCostScale(1.7, 3.6).depth, CostVolume::Depth::kU8);

@@ -55,7 +55,7 @@ class CommandsTest(unittest.TestCase):
             names.update(re.findall(r'(?:advertise(?:Camera)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
             names.update(re.findall(r'(?:param(?:<[^>]+>)?|period)\("(\w+)"', text))
             if source == "params_ros.cpp":
-                names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)"}\)?[;,]', text, flags=re.S))
+                names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)",\s*TuningStep::', text, flags=re.S))
         self.assertLessEqual({"disparity", "left/camera_info", "seeds/depth", "queue_size", "max_rate", "seeds_wait"}, names)
         for name in sorted(names):
             with self.subTest(name=name):

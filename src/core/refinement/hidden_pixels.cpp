@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "refinement/hidden_pixels.hpp"
+#include "fdp_stereo/hidden_pixels.hpp"
 
 #include "fdp_stereo/types.hpp"
 #include "parallel.hpp"
