@@ -35,7 +35,7 @@ set_target_properties(disparity_node PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
 add_dependencies(disparity_node fdp_stereo_nodelet)
 
-if(CLI11_FOUND)
+if(TARGET match)
   add_library(fdp_stereo_bags STATIC
     tools/bag_pairs.cpp
     tools/bag_topics.cpp

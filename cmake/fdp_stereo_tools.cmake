@@ -12,9 +12,9 @@ target_link_libraries(parameters_doc PRIVATE fdp_stereo_core)
 add_custom_target(update_docs COMMAND parameters_doc > ${PROJECT_SOURCE_DIR}/docs/parameters.md VERBATIM)
 
 find_package(CLI11 QUIET)
-find_package(nlohmann_json REQUIRED)
-if(NOT CLI11_FOUND)
-  message(STATUS "fdp_stereo: no command-line tools, for CLI11 is not installed")
+find_package(nlohmann_json QUIET)
+if(NOT CLI11_FOUND OR NOT nlohmann_json_FOUND)
+  message(STATUS "fdp_stereo: no command-line tools: CLI11 or nlohmann_json is not installed")
   return()
 endif()
 

@@ -11,7 +11,7 @@ set -euo pipefail
 "${OBJDUMP:-objdump}" -dC --no-show-raw-insn "$@" | awk '
   BEGIN {
     needs["combineU8"] = "umull"; needs["hamming"] = "cnt"; needs["absoluteDifferences"] = "umin"
-    needs["sweepRowOf"] = "umin"; needs["relaxRow"] = "fcmgt"; needs["addNeighbour"] = "fmul"
+    needs["followOf"] = "umin"; needs["relaxRow"] = "fcmgt"; needs["addNeighbour"] = "fmul"
   }
   function check(  key) {
     if (name == "") return
