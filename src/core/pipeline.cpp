@@ -12,11 +12,11 @@
 
 #include "costs/image_planes.hpp"
 #include "costs/subpixel_volume.hpp"
+#include "fdp_stereo/hidden_pixels.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/scaling.hpp"
 #include "images/blind_pixels.hpp"
-#include "fdp_stereo/hidden_pixels.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
