@@ -19,7 +19,7 @@ namespace fdp_stereo {
 /// it has them. Remembers their names, so that whoever judges the others knows them.
 class StartParams {
  public:
-  explicit StartParams(ros::NodeHandle private_node) : node_(std::move(private_node)) {
+  explicit StartParams(const ros::NodeHandle& private_node) : node_(private_node) {
     try {
       given_ = readYaml(node_.param<std::string>("params", ""), "~params");
     } catch (const std::invalid_argument&) {  // which ReconfigureServer reports

@@ -117,7 +117,7 @@ std::string trim(const std::string& text) {
 
 std::string formatNumber(double value) {
   for (int digits = 6; digits < 17; ++digits) {
-    const std::string text = printNumber(value, digits);
+    std::string text = printNumber(value, digits);
     double back = 0.0;
     if (parse(text, back) && back == value) return text;
   }
