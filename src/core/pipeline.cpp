@@ -216,7 +216,7 @@ void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& r
       quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
 }
 
-/// Spreads the seeds in costs of the left view, or of the right one, mirrored.
+/// Spreads the seeds in the costs of the left view; expandPlanes() does so in those of its own.
 void Pipeline::spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume) {
   if (!params_.disparity_propagation.enabled) return;
   const DisparityAxis axis{frame.search.min, 1};
