@@ -21,7 +21,7 @@ function(fdp_stereo_add_kernels target)
   foreach(isa IN LISTS FDP_STEREO_ISAS)
     set(object ${target}_kernels_${isa})
     add_library(${object} OBJECT ${ARGN})
-    target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src/core)
+    target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src/core ${PROJECT_SOURCE_DIR}/include)
     # No trapping: a loop with a condition on floats becomes vectors only where both sides may be computed. Same bits.
     target_compile_options(${object} PRIVATE ${FDP_STEREO_OPTIMIZE} -ffp-contract=off -fno-trapping-math -fopenmp-simd -Wno-psabi
       ${FDP_STEREO_FLAGS_${isa}})

@@ -39,7 +39,7 @@ class SemiGlobalMatcher {
   static int firstRow(int height, int row_step);
 
   /// Bytes beside the volume for each of its costs, with a row_step of 1.
-  static constexpr double kBytesPerCost = 2.0;
+  static constexpr double kBytesPerCost = 1.0;
 
  private:
   struct Workspace;

@@ -26,9 +26,23 @@ class DisparitySelection {
   void selectRow(int y, const std::uint16_t* sums, OptimizerOutput& output);
 
  private:
-  void writeLeft(int x, const Winner& winner, const std::uint16_t* sums, float* disparity, float* margin) const;
-  void writeRight(const std::uint16_t* sums, float* disparity) const;
-  float fraction(std::uint16_t before, std::uint16_t best, std::uint16_t after) const;
+  /// Sums around the minimum of each pixel of a row, and the offsets that follow; without neighbours both rise alike.
+  struct Row {
+    std::vector<std::uint16_t> before, best, after;
+    std::vector<float> offset;
+
+    explicit Row(std::size_t width) : before(width), best(width), after(width), offset(width) {}
+    void set(int x, std::uint16_t of_before, std::uint16_t of_best, std::uint16_t of_after) {
+      before[x] = of_before;
+      best[x] = of_best;
+      after[x] = of_after;
+    }
+  };
+
+  bool inside(int index) const { return index > 0 && index + 1 < range_.count; }
+  void findWinners(const std::uint16_t* sums);
+  void writeLeft(float* disparity, float* margin);
+  void writeRight(const std::uint16_t* sums, float* disparity);
 
   DisparityRange range_;
   int width_, stride_;
@@ -38,6 +52,7 @@ class DisparitySelection {
   std::vector<Winner> winners_;
   std::vector<std::uint16_t> right_best_;  // from right to left
   std::vector<std::uint16_t> right_index_;
+  Row left_, right_;
 };
 
 }  // namespace fdp_stereo

@@ -46,16 +46,17 @@ struct Penalties {
   }
 };
 
-void follow(const PathBundle<std::uint8_t>& bundle, int lines, bool add) {
-  FDP_STEREO_SELECT(semiGlobalKernels).followU8(bundle, lines, add);
+void follow(const PathBundle<std::uint8_t>& bundle, int lines, PathSum sum) {
+  FDP_STEREO_SELECT(semiGlobalKernels).followU8(bundle, lines, sum);
 }
-void follow(const PathBundle<std::uint16_t>& bundle, int lines, bool add) {
-  FDP_STEREO_SELECT(semiGlobalKernels).followU16(bundle, lines, add);
+void follow(const PathBundle<std::uint16_t>& bundle, int lines, PathSum sum) {
+  FDP_STEREO_SELECT(semiGlobalKernels).followU16(bundle, lines, sum);
 }
 
 /// Memory of one run; kept from pair to pair.
 struct PathMemory {
-  Buffer sums;      // u16: rows x width x stride
+  Buffer excess;    // of three paths: rows x width x stride
+  Buffer totals;    // u16, of a few rows: chunk x width x stride
   Buffer across;    // P2 between (x - 1, y) and (x, y): rows x (width + 1)
   Buffer down;      // P2 between (x, y - 1) and (x, y): (rows + 1) x width
   Buffer columns;   // two slots per column
@@ -69,7 +70,7 @@ template <typename T>
 class Paths {
  public:
   Paths(const CostVolume& volume, const RowGrid& rows, const cv::Mat& guide, const Penalties<T>& penalties, int threads,
-        PathMemory& memory)
+        int chunk, PathMemory& memory)
       : volume_(volume),
         rows_(rows),
         guide_(guide),
@@ -79,7 +80,8 @@ class Paths {
         slot_(static_cast<std::size_t>(count_) + 2 * kGuard),
         memory_(memory) {
     const std::size_t pixels = static_cast<std::size_t>(width_) * rows.count;
-    memory.sums.reserve(pixels * count_ * sizeof(std::uint16_t));
+    memory.excess.reserve(pixels * count_ * sizeof(T));
+    memory.totals.reserve(static_cast<std::size_t>(chunk) * rowEntries() * sizeof(std::uint16_t));
     memory.across.reserve((pixels + rows.count) * sizeof(T));
     memory.down.reserve((pixels + width_) * sizeof(T));
     memory.columns.reserve(2 * width_ * slot_ * sizeof(T));
@@ -87,7 +89,8 @@ class Paths {
     memory.along.reserve(2 * slot_ * kBundleLines * threads * sizeof(T));
   }
 
-  std::uint16_t* sums(int row) { return memory_.sums.as<std::uint16_t>() + row * rowEntries(); }
+  /// Of the row-th row of a chunk.
+  std::uint16_t* totals(int row) { return memory_.totals.as<std::uint16_t>() + row * rowEntries(); }
 
   /// Both ways along up to kBundleLines rows from `first` on; begins their sums.
   void alongRows(int first, int last, int thread) {
@@ -108,6 +111,7 @@ class Paths {
   }
 
   /// Along the columns in [first, last) through the rows in [top, bottom), which follow those of the call before.
+  /// Upwards, the last way, gives the totals of these rows.
   void alongColumns(int first, int last, int top, int bottom, bool upwards, bool exchanged) {
     const int lines = last - first == kBundleLines ? kBundleLines : 1;
     PathBundle<T> bundle = emptyBundle();
@@ -119,14 +123,15 @@ class Paths {
       for (int k = 0; k < lines; ++k) {
         const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(x + k) * count_;
         bundle.costs[k] = volume_.at<T>(rows_.imageRow(start), 0) + pixel;
-        bundle.sums[k] = sums(start) + pixel;
+        bundle.excess[k] = excess(start) + pixel;
+        bundle.totals[k] = totals(start - top) + pixel;
         bundle.p2[k] = memory_.down.as<T>() + static_cast<std::ptrdiff_t>(upwards ? start + 1 : start) * width_ + x + k;
         bundle.before[k] = column(x + k, exchanged ? 1 : 0);
         bundle.after[k] = column(x + k, exchanged ? 0 : 1);
       }
       bundle.smallest = memory_.smallest.as<T>() + x;
       bundle.sums_step = upwards ? -rowEntries() : rowEntries();
-      follow(bundle, lines, true);
+      follow(bundle, lines, upwards ? PathSum::kLast : PathSum::kNext);
     }
   }
 
@@ -135,6 +140,7 @@ class Paths {
 
   std::ptrdiff_t rowEntries() const { return static_cast<std::ptrdiff_t>(width_) * count_; }
   std::ptrdiff_t volumeRow() const { return rowEntries(); }
+  T* excess(int row) { return memory_.excess.as<T>() + row * rowEntries(); }
   T* column(int x, int slot) {
     return memory_.columns.as<T>() + (2 * static_cast<std::size_t>(x) + slot) * slot_ + kGuard;
   }
@@ -177,7 +183,7 @@ class Paths {
     for (int k = 0; k < lines; ++k) {
       const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(start) * count_;
       bundle.costs[k] = volume_.at<T>(rows_.imageRow(row + k), 0) + pixel;
-      bundle.sums[k] = sums(row + k) + pixel;
+      bundle.excess[k] = excess(row + k) + pixel;
       bundle.p2[k] =
           memory_.across.as<T>() + static_cast<std::ptrdiff_t>(row + k) * (width_ + 1) + (backwards ? width_ : 0);
       bundle.before[k] = slots + 2 * k * slot_;
@@ -185,7 +191,7 @@ class Paths {
       clear(bundle.before[k]);
       clear(bundle.after[k]);
     }
-    follow(bundle, lines, backwards);
+    follow(bundle, lines, backwards ? PathSum::kNext : PathSum::kFirst);
   }
 
   const CostVolume& volume_;
@@ -224,17 +230,17 @@ struct SemiGlobalMatcher::Workspace {
            OptimizerOutput& output);
 };
 
-/// Down the image: sums of the paths along the rows and downwards; up again: the rest, and the winners.
+/// Down the image: what the paths along the rows and downwards add; up again: the totals, and the winners.
 template <typename T>
 void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params,
                                        const RowGrid& rows, OptimizerOutput& output) {
   const int threads = omp_get_max_threads();
   const Penalties<T> penalties(params, volume.step());
-  Paths<T> paths(volume, rows, guide, penalties, threads, memory);
+  const int width = volume.width(), chunk = kBundleLines * threads;
+  Paths<T> paths(volume, rows, guide, penalties, threads, chunk, memory);
   DisparitySelection::createMaps(rows.count, volume.width(), output);
   selections.clear();
   for (int i = 0; i < threads; ++i) selections.emplace_back(volume, params.subpixel, params.uniqueness_ratio, 4);
-  const int width = volume.width(), chunk = kBundleLines * threads;
   const int columns = (width + kBundleLines - 1) / kBundleLines;
 #pragma omp parallel num_threads(threads)
   {
@@ -262,7 +268,7 @@ void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& 
       }
 #pragma omp for schedule(static)
       for (int row = top; row < bottom; ++row) {
-        selections[omp_get_thread_num()].selectRow(row, paths.sums(row), output);
+        selections[omp_get_thread_num()].selectRow(row, paths.totals(row - top), output);
       }
     }
   }

@@ -3,73 +3,88 @@
 #include "fdp_stereo/speckle_filter.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace fdp_stereo {
 namespace {
 
-/// The 4-connected regions of a map, one after another; keeps its memory.
-class RegionFinder {
+/// 4-connected regions, built from the runs of alike neighbours along the rows.
+class Regions {
  public:
-  RegionFinder(const cv::Mat& disparity, float max_difference, std::size_t kept)
-      : disparity_(disparity), max_difference_(max_difference), kept_(kept), visited_(disparity.total(), 0) {}
-
-  bool visited(int p) const { return visited_[p] != 0; }
-
-  /// The region of pixel `start`, which no region before held: its pixels as indices into the map, or `kept` of them.
-  const std::vector<int>& grow(int start) {
-    region_.clear();
-    next_.clear();
-    visit(start);
-    while (!next_.empty()) {
-      frontier_.swap(next_);
-      next_.clear();
-      for (const int p : frontier_) visitNeighbours(p);
+  Regions(const cv::Mat& disparity, float max_difference)
+      : disparity_(disparity), max_difference_(max_difference), run_(disparity.size(), CV_32SC1) {
+    for (int y = 0; y < disparity.rows; ++y) {
+      findRuns(y);
+      if (y > 0) joinRows(y);
     }
-    return region_;
   }
+
+  /// Pixels of the region that pixel x of row y belongs to.
+  int size(int y, int x) { return size_[rootOf(run_.at<int>(y, x))]; }
 
  private:
-  void visit(int p) {
-    visited_[p] = 1;
-    next_.push_back(p);
-    if (region_.size() < kept_) region_.push_back(p);
+  bool alike(float a, float b) const { return std::abs(a - b) <= max_difference_; }
+
+  void findRuns(int y) {
+    const auto* d = disparity_.ptr<float>(y);
+    auto* run = run_.ptr<int>(y);
+    int current = -1;
+    for (int x = 0; x < disparity_.cols; ++x) {
+      if (x == 0 || !alike(d[x], d[x - 1])) {
+        current = static_cast<int>(size_.size());
+        parent_.push_back(current);
+        size_.push_back(0);
+      }
+      run[x] = current;
+      ++size_[current];
+    }
   }
 
-  void visitNeighbours(int p) {
-    const int cols = disparity_.cols;
-    const int x = p % cols, y = p / cols;
-    if (x > 0) visitAlike(p, p - 1);
-    if (x + 1 < cols) visitAlike(p, p + 1);
-    if (y > 0) visitAlike(p, p - cols);
-    if (y + 1 < disparity_.rows) visitAlike(p, p + cols);
+  void joinRows(int y) {
+    const auto* d = disparity_.ptr<float>(y);
+    const auto* above = disparity_.ptr<float>(y - 1);
+    const auto* run = run_.ptr<int>(y);
+    const auto* run_above = run_.ptr<int>(y - 1);
+    int joined = -1, joined_above = -1;
+    for (int x = 0; x < disparity_.cols; ++x) {
+      if (!alike(d[x], above[x]) || (run[x] == joined && run_above[x] == joined_above)) continue;
+      joined = run[x];
+      joined_above = run_above[x];
+      join(joined, joined_above);
+    }
   }
 
-  void visitAlike(int p, int q) {
-    const auto* d = disparity_.ptr<float>();
-    if (visited_[q] == 0 && std::abs(d[p] - d[q]) <= max_difference_) visit(q);
+  void join(int a, int b) {
+    a = rootOf(a);
+    b = rootOf(b);
+    if (a == b) return;
+    if (a > b) std::swap(a, b);
+    parent_[b] = a;
+    size_[a] += size_[b];
+  }
+
+  int rootOf(int a) {
+    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
+    return a;
   }
 
   const cv::Mat& disparity_;
   float max_difference_;
-  std::size_t kept_;
-  std::vector<std::uint8_t> visited_;
-  std::vector<int> region_, frontier_, next_;
+  cv::Mat run_;  // CV_32SC1, number of the run of each pixel
+  std::vector<int> parent_, size_;
 };
 
 }  // namespace
 
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
   if (params.max_size <= 0) return;
-  if (!disparity.isContinuous()) disparity = disparity.clone();
-  auto* d = disparity.ptr<float>();
-  const auto max_size = static_cast<std::size_t>(params.max_size);
-  RegionFinder regions(disparity, static_cast<float>(params.max_difference_px), max_size);
-  for (int p = 0; p < static_cast<int>(disparity.total()); ++p) {
-    if (regions.visited(p) || std::isnan(d[p])) continue;
-    const std::vector<int>& region = regions.grow(p);
-    if (region.size() >= max_size) continue;
-    for (const int q : region) d[q] = kInvalidDisparity;
+  Regions regions(disparity, static_cast<float>(params.max_difference_px));
+  for (int y = 0; y < disparity.rows; ++y) {
+    auto* d = disparity.ptr<float>(y);
+    for (int x = 0; x < disparity.cols; ++x) {
+      if (regions.size(y, x) < params.max_size) d[x] = kInvalidDisparity;
+    }
   }
 }
 

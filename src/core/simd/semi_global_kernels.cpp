@@ -21,7 +21,7 @@ typedef std::uint32_t U32x4 __attribute__((vector_size(16)));
 template <typename T, int kLanes>
 struct Lanes {
   typedef T Vector __attribute__((vector_size(kLanes * sizeof(T))));
-  typedef std::uint16_t Sums __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
+  typedef std::uint16_t Total __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
 
   static Vector load(const T* from) {
     Vector v;
@@ -31,15 +31,26 @@ struct Lanes {
   static void store(const Vector& v, T* to) { __builtin_memcpy(to, &v, sizeof(v)); }
 };
 
+/// One pixel of one path.
+template <typename T>
+struct PathPixel {
+  const T* before;
+  T* after;
+  const T* costs;
+  T* excess;
+  std::uint16_t* totals;
+  T p1, jump, smallest;
+};
+
 template <typename Vector>
 inline Vector smallerOf(const Vector& a, const Vector& b) {
   return a < b ? a : b;
 }
 
 template <typename T>
-using Half = typename Lanes<T, 16 / sizeof(T)>::Vector;
+using Half = typename Lanes<T, 16 / static_cast<int>(sizeof(T))>::Vector;
 template <typename T>
-using Full = typename Lanes<T, kVectorBytes / sizeof(T)>::Vector;
+using Full = typename Lanes<T, kVectorBytes / static_cast<int>(sizeof(T))>::Vector;
 
 template <typename T>
 inline Half<T> smallerHalf(const Full<T>& v) {
@@ -81,45 +92,47 @@ inline void smallestLanes(const Half<T> (&v)[4], T (&smallest)[4]) {
 
 #undef FDP_STEREO_PICK
 
-/// kLanes disparities of one pixel of each line from entry i on; all path costs fit T by the choice of the cost step.
-template <typename T, int kLanes, bool kAdd>
-inline typename Lanes<T, kLanes>::Vector stepLanes(const T* before, T* after, const T* costs, std::uint16_t* sums, T p1,
-                                                   T jump, T smallest) {
+/// What one path adds to the costs of kLanes disparities from entry i on. All path costs fit T by the choice of the cost
+/// step; only the sums of the first three paths may have to stop at the largest T.
+template <typename T, int kLanes, PathSum kSum>
+inline typename Lanes<T, kLanes>::Vector stepLanes(const PathPixel<T>& at, int i) {
   using L = Lanes<T, kLanes>;
   using Vector = typename L::Vector;
-  using Sums = typename L::Sums;
-  const Vector aside = smallerOf(L::load(before - 1), L::load(before + 1)) + p1;
-  const Vector path = smallerOf(smallerOf(L::load(before), aside), Vector{} + jump) - smallest + L::load(costs);
-  L::store(path, after);
-  Sums sum = __builtin_convertvector(path, Sums);
-  if (kAdd) {
-    Sums others;
-    __builtin_memcpy(&others, sums, sizeof(others));
-    sum += others;
+  using Total = typename L::Total;
+  const T* before = at.before + i;
+  const Vector aside = smallerOf(L::load(before - 1), L::load(before + 1)) + at.p1;
+  const Vector excess = smallerOf(smallerOf(L::load(before), aside), Vector{} + at.jump) - at.smallest;
+  const Vector cost = L::load(at.costs + i);
+  const Vector path = excess + cost;
+  L::store(path, at.after + i);
+  if (kSum == PathSum::kFirst) {
+    L::store(excess, at.excess + i);
+  } else {
+    const Vector others = L::load(at.excess + i);
+    if (kSum == PathSum::kNext) L::store(others + smallerOf(excess, ~others), at.excess + i);
+    if (kSum == PathSum::kLast) {
+      const Total total = static_cast<std::uint16_t>(3) * __builtin_convertvector(cost, Total) +
+                          __builtin_convertvector(others, Total) + __builtin_convertvector(path, Total);
+      __builtin_memcpy(at.totals + i, &total, sizeof(total));
+    }
   }
-  __builtin_memcpy(sums, &sum, sizeof(sum));
   return path;
 }
 
 /// One pixel of one line, all disparities; gives the smallest lanes.
-template <typename T, bool kAdd>
-inline Half<T> stepPixel(const T* before, T* after, const T* costs, std::uint16_t* sums, T p1, T jump, T smallest,
-                         int count) {
-  constexpr int kWide = kVectorBytes / sizeof(T);
-  constexpr int kNarrow = 16 / sizeof(T);
+template <typename T, PathSum kSum>
+inline Half<T> stepPixel(const PathPixel<T>& at, int count) {
+  constexpr int kWide = kVectorBytes / static_cast<int>(sizeof(T));
+  constexpr int kNarrow = 16 / static_cast<int>(sizeof(T));
   Full<T> wide = ~Full<T>{};
   int i = 0;
-  for (; i + kWide <= count; i += kWide) {
-    wide = smallerOf(wide, stepLanes<T, kWide, kAdd>(before + i, after + i, costs + i, sums + i, p1, jump, smallest));
-  }
+  for (; i + kWide <= count; i += kWide) wide = smallerOf(wide, stepLanes<T, kWide, kSum>(at, i));
   Half<T> half = smallerHalf<T>(wide);
-  for (; i < count; i += kNarrow) {
-    half = smallerOf(half, stepLanes<T, kNarrow, kAdd>(before + i, after + i, costs + i, sums + i, p1, jump, smallest));
-  }
+  for (; i < count; i += kNarrow) half = smallerOf(half, stepLanes<T, kNarrow, kSum>(at, i));
   return half;
 }
 
-template <typename T, int kLines, bool kAdd>
+template <typename T, int kLines, PathSum kSum>
 void followOf(const PathBundle<T>& bundle_in) {
   // A copy whose address nobody has: bytes stored through T* could otherwise change it, and it would be read anew.
   const PathBundle<T> bundle = bundle_in;
@@ -134,9 +147,16 @@ void followOf(const PathBundle<T>& bundle_in) {
   for (int n = 0; n < bundle.length; ++n) {
     Half<T> half[4] = {};
     for (int k = 0; k < kLines; ++k) {
-      const T jump = static_cast<T>(smallest[k] + bundle.p2[k][n * bundle.p2_step]);
-      half[k] = stepPixel<T, kAdd>(before[k], after[k], bundle.costs[k] + n * bundle.step,
-                                   bundle.sums[k] + n * bundle.sums_step, bundle.p1, jump, smallest[k], bundle.count);
+      PathPixel<T> at{};
+      at.before = before[k];
+      at.after = after[k];
+      at.costs = bundle.costs[k] + n * bundle.step;
+      at.excess = bundle.excess[k] + n * bundle.sums_step;
+      if (kSum == PathSum::kLast) at.totals = bundle.totals[k] + n * bundle.sums_step;
+      at.p1 = bundle.p1;
+      at.jump = static_cast<T>(smallest[k] + bundle.p2[k][n * bundle.p2_step]);
+      at.smallest = smallest[k];
+      half[k] = stepPixel<T, kSum>(at, bundle.count);
       T* const now = after[k];
       after[k] = before[k];
       before[k] = now;
@@ -146,13 +166,21 @@ void followOf(const PathBundle<T>& bundle_in) {
   for (int k = 0; k < kLines; ++k) bundle.smallest[k] = smallest[k];
 }
 
-template <typename T>
-void follow(const PathBundle<T>& bundle, int lines, bool add) {
-  if (lines == kBundleLines) {
-    add ? followOf<T, kBundleLines, true>(bundle) : followOf<T, kBundleLines, false>(bundle);
-  } else {
-    add ? followOf<T, 1, true>(bundle) : followOf<T, 1, false>(bundle);
+template <typename T, int kLines>
+void followLines(const PathBundle<T>& bundle, PathSum sum) {
+  switch (sum) {
+    case PathSum::kFirst:
+      return followOf<T, kLines, PathSum::kFirst>(bundle);
+    case PathSum::kNext:
+      return followOf<T, kLines, PathSum::kNext>(bundle);
+    case PathSum::kLast:
+      return followOf<T, kLines, PathSum::kLast>(bundle);
   }
+}
+
+template <typename T>
+void follow(const PathBundle<T>& bundle, int lines, PathSum sum) {
+  lines == kBundleLines ? followLines<T, kBundleLines>(bundle, sum) : followLines<T, 1>(bundle, sum);
 }
 
 // Sums less 2^15: SSE2 compares and finds minima of 16 bits with sign only.
@@ -168,34 +196,45 @@ inline Signed loadSums(const std::uint16_t* sums, const Signed& index, int count
 
 inline std::uint16_t unsignedSum(std::int16_t sum) { return static_cast<std::uint16_t>(sum + (1 << 15)); }
 
-/// Winners of four pixels, so that the lanes of all of them are reduced together.
+/// The two smallest sums in each lane, and the index of the first of them.
+struct LaneWinners {
+  Signed best, index, second;
+};
+
+inline LaneWinners laneWinners(const std::uint16_t* sums, const Signed& first, int count) {
+  LaneWinners lanes{Signed{} + kNoSum, Signed{} + kNoSum, Signed{} + kNoSum};
+  Signed index = first;
+  int i = 0;
+  for (; i < count; i += kSumLanes, index += kSumLanes) {
+    const Signed values = loadSums(sums + i, index, count);
+    lanes.second = smallerOf(lanes.second, values < lanes.best ? lanes.best : values);
+    lanes.index = values < lanes.best ? index : lanes.index;
+    lanes.best = smallerOf(values, lanes.best);
+  }
+  return lanes;
+}
+
+/// Winners of four pixels, so that the lanes of all of them are reduced together. The winner and its two neighbours are
+/// in three lanes, so that each lane's best but one of them tells the smallest sum elsewhere.
 void findFourWinners(const std::uint16_t* const (&sums)[4], int count, Winner (&winners)[4]) {
   Signed first;
   for (int i = 0; i < kSumLanes; ++i) first[i] = static_cast<std::int16_t>(i);
   const Signed none = Signed{} + kNoSum;
-  Signed best[4], best_index[4];
+  LaneWinners lanes[4];
   Half<std::int16_t> half[4];
   std::int16_t smallest[4], winner[4], second[4];
   for (int k = 0; k < 4; ++k) {
-    best[k] = best_index[k] = none;
-    Signed index = first;
-    for (int i = 0; i < count; i += kSumLanes, index += kSumLanes) {
-      const Signed values = loadSums(sums[k] + i, index, count);
-      best_index[k] = values < best[k] ? index : best_index[k];
-      best[k] = smallerOf(values, best[k]);
-    }
-    half[k] = smallerHalf<std::int16_t>(best[k]);
+    lanes[k] = laneWinners(sums[k], first, count);
+    half[k] = smallerHalf<std::int16_t>(lanes[k].best);
   }
   smallestLanes<std::int16_t>(half, smallest);
-  for (int k = 0; k < 4; ++k) half[k] = smallerHalf<std::int16_t>(best[k] == smallest[k] ? best_index[k] : none);
+  for (int k = 0; k < 4; ++k) {
+    half[k] = smallerHalf<std::int16_t>(lanes[k].best == smallest[k] ? lanes[k].index : none);
+  }
   smallestLanes<std::int16_t>(half, winner);
   for (int k = 0; k < 4; ++k) {
-    Signed others = none;
-    Signed index = first - winner[k];
-    for (int i = 0; i < count; i += kSumLanes, index += kSumLanes) {
-      const Signed values = loadSums(sums[k] + i, index, count - winner[k]);
-      others = smallerOf(others, ((index == -1) | (index == 0) | (index == 1)) ? none : values);
-    }
+    const Signed distance = lanes[k].index - winner[k];
+    const Signed others = ((distance == -1) | (distance == 0) | (distance == 1)) ? lanes[k].second : lanes[k].best;
     half[k] = smallerHalf<std::int16_t>(others);
   }
   smallestLanes<std::int16_t>(half, second);
@@ -223,10 +262,32 @@ void keepSmaller(const std::uint16_t* __restrict values, int count, std::uint16_
   }
 }
 
+template <SubpixelFit kFit>
+void subpixelOffsetsOf(const Minima& minima, int count, float* __restrict offsets) {
+  const std::uint16_t* __restrict before = minima.before;
+  const std::uint16_t* __restrict best = minima.best;
+  const std::uint16_t* __restrict after = minima.after;
+  for (int i = 0; i < count; ++i) offsets[i] = subpixelOffset(kFit, before[i], best[i], after[i]);
+}
+
+void subpixelOffsets(SubpixelFit fit, const Minima& minima, int count, float* offsets) {
+  switch (fit) {
+    case SubpixelFit::kNone:
+      return subpixelOffsetsOf<SubpixelFit::kNone>(minima, count, offsets);
+    case SubpixelFit::kParabola:
+      return subpixelOffsetsOf<SubpixelFit::kParabola>(minima, count, offsets);
+    case SubpixelFit::kEquiangular:
+      return subpixelOffsetsOf<SubpixelFit::kEquiangular>(minima, count, offsets);
+    case SubpixelFit::kBlended:
+      return subpixelOffsetsOf<SubpixelFit::kBlended>(minima, count, offsets);
+  }
+}
+
 }  // namespace
 
 const SemiGlobalKernels& semiGlobalKernels() {
-  static const SemiGlobalKernels kernels = {follow<std::uint8_t>, follow<std::uint16_t>, findWinners, keepSmaller};
+  static const SemiGlobalKernels kernels = {follow<std::uint8_t>, follow<std::uint16_t>, findWinners, keepSmaller,
+                                            subpixelOffsets};
   return kernels;
 }
 
