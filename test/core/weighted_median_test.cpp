@@ -13,7 +13,7 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr float kTolerance = 1.0F / 1024.0F;  // px, of the bisection
+constexpr float kTolerance = 1.0F / 64.0F;  // px, of the samples
 
 WeightedMedianParams paramsOf(int radius, double gamma) {
   WeightedMedianParams params;

@@ -94,7 +94,7 @@ inline MedianBalance medianBalance(const cv::Mat& d, const cv::Mat& image, int x
       balance.all += weight;
       if (sample < value - tolerance) balance.twice_below += 2.0 * weight;
       if (sample > value + tolerance) balance.twice_above += 2.0 * weight;
-      if (sample == value) balance.is_a_sample = true;
+      if (std::abs(sample - value) <= tolerance) balance.is_a_sample = true;
     }
   }
   return balance;

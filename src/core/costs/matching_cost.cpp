@@ -41,14 +41,8 @@ cv::Mat blurred(const cv::Mat& grey, double sigma_px) {
 
 /// Fixed-point theta: costs come in `units` per 1, weight * theta = result / 2^shift * step.
 Theta makeTheta(double units, double lambda, double weight, double step, int shift) {
-  const double limit = std::clamp(std::floor(8.0 * lambda * units), 1.0, 2047.0);
-  Theta theta{};
-  theta.limit = static_cast<std::uint16_t>(limit);
-  while ((theta.limit << (theta.shift + 1)) <= 65535) ++theta.shift;
-  const double factor = 65536.0 * 65536.0 / (16.0 * lambda * units * (1 << theta.shift));
-  theta.factor = static_cast<std::uint16_t>(std::min(std::lround(factor), 65535L));
-  theta.weight = static_cast<std::uint16_t>(std::min(weight / step * (1 << shift) * 65536.0 / kThetaOne, 65535.0));
-  return theta;
+  const double largest = std::min(weight / step * (1 << shift) * 65536.0 / kDecayOne, 65535.0);
+  return {makeDecay(lambda * units), static_cast<std::uint16_t>(largest)};
 }
 
 /// The same in a table, exactly.

@@ -205,7 +205,7 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.add("enabled", p.hole_filling.enabled, "Fill pixels without disparity from the background beside them.").step =
       TuningStep::kFilters;
   list.stage("weighted_median");
-  list.add("radius", p.weighted_median.radius, 0, 50, "px", "Radius of the window of the weighted median; 0 is off.")
+  list.add("radius", p.weighted_median.radius, 0, 7, "px", "Radius of the window of the weighted median; 0 is off.")
       .step = TuningStep::kFilters;
   list.add("gamma", p.weighted_median.gamma, 0.0, 200.0, "",
            "Colour difference at which a neighbour's weight falls to 1/e; 0 is the plain median.");

@@ -3,7 +3,6 @@
 #include "fdp_stereo/weighted_median.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,40 +15,64 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr double kUnitWeight = 4096.0;
-constexpr float kFar = 1e9F;  // beyond every disparity
+constexpr float kFar = 1e9F;                // beyond every disparity
+constexpr double kStepsPerPx = 64.0;        // of the samples
+constexpr double kMostSteps = 65000.0;      // between the smallest and the largest
+constexpr std::int16_t kSmallest = -32767;  // sample
 
-/// exp(-|dI|_1 / gamma) of eq. (11) for |dI|_1 = 0..765, in 1/4096.
-std::array<std::int32_t, 766> weightTable(double gamma) {
-  std::array<std::int32_t, 766> table{};
-  for (int i = 0; i < 766; ++i) {
-    const double weight = gamma > 0.0 ? std::exp(-i / gamma) : 1.0;
-    table[i] = static_cast<std::int32_t>(std::lround(weight * kUnitWeight));
-  }
-  return table;
+/// exp(-|dI|_1 / gamma) of eq. (11); alike for all where gamma is 0.
+MedianWeight weightOf(double gamma, int side) {
+  MedianWeight weight{};
+  weight.largest = static_cast<std::uint16_t>(65535 / (side * side));
+  if (gamma > 0.0) weight.decay = makeDecay(gamma);
+  return weight;
 }
 
-/// Disparity and image with a border wide enough for the windows and vectors of every pixel: NaN beyond the map.
+/// Disparities of a map as whole numbers.
+class SampleScale {
+ public:
+  explicit SampleScale(const cv::Mat& disparity) {
+    double smallest = 0.0, largest = 0.0;
+    cv::minMaxLoc(disparity, &smallest, &largest, nullptr, nullptr, disparity == disparity);
+    offset_ = static_cast<float>(smallest);
+    steps_ = static_cast<float>(std::min(kStepsPerPx, kMostSteps / std::max(largest - smallest, 1.0)));
+  }
+  void toSamples(const float* disparity, int count, std::int16_t* samples) const {
+    for (int x = 0; x < count; ++x) {
+      const float d = disparity[x] == disparity[x] ? disparity[x] : offset_;
+      const auto steps = static_cast<std::int32_t>((d - offset_) * steps_ + 0.5F) + kSmallest;
+      samples[x] = disparity[x] == disparity[x] ? static_cast<std::int16_t>(steps) : kNoSample;
+    }
+  }
+  float toDisparity(std::int16_t sample) const { return offset_ + static_cast<float>(sample - kSmallest) / steps_; }
+
+ private:
+  float offset_, steps_;
+};
+
+/// Samples and image with a border wide enough for the windows and vectors of every pixel: no samples beyond the map.
 class PaddedSource {
  public:
-  PaddedSource(const cv::Mat& disparity, const cv::Mat& left, int radius) : radius_(radius) {
-    const int beyond = radius + kMedianLanes;
-    cv::copyMakeBorder(disparity, disparity_, radius, radius, radius, beyond, cv::BORDER_CONSTANT, kInvalidDisparity);
+  PaddedSource(const cv::Mat& disparity, const SampleScale& scale, const cv::Mat& left, int radius)
+      : radius_(radius),
+        samples_(disparity.rows + 2 * radius + 1, disparity.cols + 2 * radius + kMedianLanes, CV_16SC1) {
+    samples_.setTo(kNoSample);
+    parallelFor(disparity.rows, [&](int y) {
+      scale.toSamples(disparity.ptr<float>(y), disparity.cols, samples_.ptr<std::int16_t>(y + radius) + radius);
+    });
     cv::Mat plane;
     for (int c = 0; c < left.channels(); ++c) {
       cv::extractChannel(left, plane, c);
       planes_.emplace_back();
-      cv::copyMakeBorder(plane, planes_.back(), radius, radius, radius, beyond, cv::BORDER_REPLICATE);
+      cv::copyMakeBorder(plane, planes_.back(), radius, radius + 1, radius, radius + kMedianLanes,
+                         cv::BORDER_REPLICATE);
     }
   }
 
-  /// Row y of the map itself.
-  const float* row(int y) const { return disparity_.ptr<float>(y + radius_) + radius_; }
-
-  MedianWindow window(int y, int x, const std::int32_t* table) const {
+  MedianWindow window(int y, int x) const {
     MedianWindow window{};
-    window.disparity = disparity_.ptr<float>(y) + x;
-    window.disparity_stride = static_cast<std::ptrdiff_t>(disparity_.step1());
+    window.samples = samples_.ptr<std::int16_t>(y) + x;
+    window.sample_stride = static_cast<std::ptrdiff_t>(samples_.step1());
     window.plane_stride = static_cast<std::ptrdiff_t>(planes_[0].step1());
     window.channels = static_cast<int>(planes_.size());
     window.side = 2 * radius_ + 1;
@@ -57,22 +80,23 @@ class PaddedSource {
       window.planes[c] = planes_[c].ptr<std::uint8_t>(y) + x;
       window.colour[c] = planes_[c].ptr<std::uint8_t>(y + radius_)[x + radius_];
     }
-    window.centre = row(y)[x];
-    window.table = table;
     return window;
   }
+  std::int16_t centre(int y, int x) const { return samples_.ptr<std::int16_t>(y + radius_)[x + radius_]; }
 
  private:
   int radius_;
-  cv::Mat disparity_;
+  cv::Mat samples_;  // CV_16SC1
   std::vector<cv::Mat> planes_;
 };
 
 /// Smallest and largest of the valid disparities of three neighbours in each column, then the largest difference over
 /// three columns: edges[x] != 0 where it exceeds min_range.
-void findEdges(const PaddedSource& source, int y, int width, float min_range, std::vector<float>& low,
-               std::vector<float>& high, std::uint8_t* edges) {
-  const float* rows[3] = {source.row(y - 1), source.row(y), source.row(y + 1)};
+void findEdges(const cv::Mat& disparity, int y, float min_range, std::vector<float>& low, std::vector<float>& high,
+               std::uint8_t* edges) {
+  const int width = disparity.cols;
+  const float* rows[3] = {disparity.ptr<float>(std::max(y - 1, 0)), disparity.ptr<float>(y),
+                          disparity.ptr<float>(std::min(y + 1, disparity.rows - 1))};
   // A NaN compares false and leaves the extremes as they are.
   for (int x = 0; x < width; ++x) {
     float smallest = kFar, largest = -kFar;
@@ -94,13 +118,14 @@ void findEdges(const PaddedSource& source, int y, int width, float min_range, st
 
 /// Buffers of one thread.
 struct Scratch {
-  std::vector<float> values, low, high;
-  std::vector<std::int32_t> weights;
+  std::vector<float> low, high;
+  std::vector<std::int16_t> values;
+  std::vector<std::uint16_t> weights;
   std::vector<std::uint8_t> wanted;
 
   Scratch(int side, int width) : low(width + 2), high(width + 2), wanted(width) {
     const int lanes = (side + kMedianLanes - 1) / kMedianLanes * kMedianLanes;
-    values.resize(static_cast<std::size_t>(side) * lanes);
+    values.resize(static_cast<std::size_t>(side + 1) * lanes);
     weights.resize(values.size());
   }
 };
@@ -110,20 +135,24 @@ struct Scratch {
 void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat& mask,
                           const WeightedMedianParams& params) {
   if (params.radius <= 0) return;
-  const PaddedSource source(disparity, left, params.radius);
-  const auto table = weightTable(params.gamma);
+  const cv::Mat before = disparity.clone();
+  const int side = 2 * params.radius + 1, width = disparity.cols;
+  const SampleScale scale(before);
+  const PaddedSource source(before, scale, left, params.radius);
+  const MedianWeight weight = weightOf(params.gamma, side);
   const float min_range = params.min_range_px > 0.0 ? static_cast<float>(params.min_range_px) : -1.0F;
   const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
-  const int width = disparity.cols;
-  const auto makeScratch = [&] { return Scratch(2 * params.radius + 1, width); };
+  const auto makeScratch = [&] { return Scratch(side, width); };
   parallelFor(disparity.rows, makeScratch, [&](int y, Scratch& scratch) {
-    findEdges(source, y, width, min_range, scratch.low, scratch.high, scratch.wanted.data());
+    findEdges(before, y, min_range, scratch.low, scratch.high, scratch.wanted.data());
     auto* d = disparity.ptr<float>(y);
     const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
     for (int x = 0; x < width; ++x) {
       const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
       if (scratch.wanted[x] == 0 || skip || std::isnan(d[x])) continue;
-      d[x] = kernels.weightedMedian(source.window(y, x, table.data()), scratch.values.data(), scratch.weights.data());
+      const auto median =
+          kernels.weightedMedian(source.window(y, x), weight, scratch.values.data(), scratch.weights.data());
+      if (median != source.centre(y, x)) d[x] = scale.toDisparity(median);
     }
   });
 }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simd/matching_cost_kernels.hpp"
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#elif defined(__ARM_NEON)
+#if defined(__ARM_NEON)
 #include <arm_neon.h>
 #endif
+
+#include "simd/fixed_point.hpp"
 
 namespace fdp_stereo {
 namespace FDP_STEREO_ISA {
@@ -129,47 +129,19 @@ void hamming(std::uint64_t left, const std::uint64_t* __restrict right, int coun
 
 #endif
 
-// Vectors of the compiler, with the one instruction that it does not find by itself.
-typedef std::uint16_t U16x16 __attribute__((vector_size(32)));
-typedef std::uint32_t U32x16 __attribute__((vector_size(64)));
-typedef std::uint8_t U8x16 __attribute__((vector_size(16)));
-
-/// Upper halves of the 32-bit products.
-inline U16x16 productHigh(const U16x16& a, const U16x16& b) {
-#if defined(__AVX2__)
-  return reinterpret_cast<U16x16>(_mm256_mulhi_epu16(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
-#elif defined(__SSE2__)
-  __m128i of_a[2], of_b[2];
-  __builtin_memcpy(of_a, &a, sizeof(a));
-  __builtin_memcpy(of_b, &b, sizeof(b));
-  for (int i = 0; i < 2; ++i) of_a[i] = _mm_mulhi_epu16(of_a[i], of_b[i]);
-  U16x16 result;
-  __builtin_memcpy(&result, of_a, sizeof(result));
-  return result;
-#else
-  return __builtin_convertvector((__builtin_convertvector(a, U32x16) * __builtin_convertvector(b, U32x16)) >> 16U,
-                                 U16x16);
-#endif
-}
-
-inline U16x16 thetaOf(const std::uint16_t* costs, const Theta& theta) {
-  U16x16 v;
+inline U16s thetaOf(const std::uint16_t* costs, const Theta& theta) {
+  U16s v;
   __builtin_memcpy(&v, costs, sizeof(v));
-  v = v < theta.limit ? v : U16x16{} + theta.limit;
-  const U16x16 y = productHigh(v << theta.shift, U16x16{} + theta.factor);
-  const U16x16 square = productHigh(productHigh(y, y), U16x16{} + kThetaSquare);
-  U16x16 e = ~y + square;  // 65535 - y + ...
-  for (int i = 0; i < 4; ++i) e = productHigh(e, e);
-  return productHigh(kThetaOne - e, U16x16{} + theta.weight);
+  return productHigh(kDecayOne - decayOf(v, theta.decay), U16s{} + theta.weight);
 }
 
 void combineU8(const std::uint16_t* a, const Theta& theta_a, const std::uint16_t* b, const Theta& theta_b, int count,
                int shift, std::uint8_t* costs) {
   const Theta of_a = theta_a, of_b = theta_b;  // copies that the bytes stored cannot change
   const auto half = static_cast<std::uint16_t>((1U << shift) >> 1);
-  for (int i = 0; i < count; i += 16) {
-    const U16x16 sum = thetaOf(a + i, of_a) + thetaOf(b + i, of_b) + half;
-    const U8x16 rounded = __builtin_convertvector(sum >> static_cast<std::uint16_t>(shift), U8x16);
+  for (int i = 0; i < count; i += kShortLanes) {
+    const U16s sum = thetaOf(a + i, of_a) + thetaOf(b + i, of_b) + half;
+    const U8s rounded = __builtin_convertvector(sum >> static_cast<std::uint16_t>(shift), U8s);
     __builtin_memcpy(costs + i, &rounded, sizeof(rounded));
   }
 }

@@ -4,20 +4,16 @@
 
 #include <cstdint>
 
+#include "simd/decay.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
 
-/// weight * theta (paper eq. 5) of a fixed-point cost v, in 16-bit integers: with y = min(v, limit) / (16 lambda) below
-/// 1/2, exp(-16 y) is (1 - y + 0.475 y^2)^16, off by at most 6e-4.
+/// weight * theta (paper eq. 5): theta = 1 - decay.
 struct Theta {
-  std::uint16_t limit;  ///< theta is 1 from here on
-  std::uint16_t shift;  ///< y = (v << shift) * factor / 2^32
-  std::uint16_t factor;
-  std::uint16_t weight;  ///< of the result, 65520 being theta = 1
+  Decay decay;
+  std::uint16_t weight;  ///< of the result, kDecayOne being theta = 1
 };
-constexpr std::uint16_t kThetaOne = 65520;     ///< what four squarings leave of 65535
-constexpr std::uint16_t kThetaSquare = 31130;  ///< 0.475 * 2^16
 
 /// Inner loops of stage 4, compiled per instruction set. All work on the disparities of one pixel: entry i belongs to
 /// the right pixel right[i], the right row being stored from right to left.

@@ -92,8 +92,8 @@ inline void smallestLanes(const Half<T> (&v)[4], T (&smallest)[4]) {
 
 #undef FDP_STEREO_PICK
 
-/// What one path adds to the costs of kLanes disparities from entry i on. All path costs fit T by the choice of the cost
-/// step; only the sums of the first three paths may have to stop at the largest T.
+/// What one path adds to the costs of kLanes disparities from entry i on. All path costs fit T by the choice of the
+/// cost step; only the sums of the first three paths may have to stop at the largest T.
 template <typename T, int kLanes, PathSum kSum>
 inline typename Lanes<T, kLanes>::Vector stepLanes(const PathPixel<T>& at, int i) {
   using L = Lanes<T, kLanes>;

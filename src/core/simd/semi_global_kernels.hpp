@@ -26,19 +26,19 @@ enum class PathSum {
 /// even number of pixels the last one is in `before` again, after an odd number in `after`.
 template <typename T>
 struct PathBundle {
-  int length;                         ///< pixels of each path
-  int count;                          ///< entries per pixel, a multiple of 16
-  std::ptrdiff_t step;                ///< from pixel to pixel, in entries of the costs
-  std::ptrdiff_t sums_step;           ///< the same of excess and totals
-  std::ptrdiff_t p2_step;             ///< from pixel to pixel, in entries of p2
-  T p1;                               ///< penalty of a step by one disparity
-  const T* costs[kBundleLines];       ///< raw matching costs of the first pixel
+  int length;                           ///< pixels of each path
+  int count;                            ///< entries per pixel, a multiple of 16
+  std::ptrdiff_t step;                  ///< from pixel to pixel, in entries of the costs
+  std::ptrdiff_t sums_step;             ///< the same of excess and totals
+  std::ptrdiff_t p2_step;               ///< from pixel to pixel, in entries of p2
+  T p1;                                 ///< penalty of a step by one disparity
+  const T* costs[kBundleLines];         ///< raw matching costs of the first pixel
   T* excess[kBundleLines];              ///< sums of L - C
   std::uint16_t* totals[kBundleLines];  ///< kLast only
-  const T* p2[kBundleLines];          ///< penalty of any other step
-  T* before[kBundleLines];            ///< slot of the predecessor
-  T* after[kBundleLines];             ///< the other slot
-  T* smallest;                        ///< [line], smallest cost of the predecessor, then of the last pixel
+  const T* p2[kBundleLines];            ///< penalty of any other step
+  T* before[kBundleLines];              ///< slot of the predecessor
+  T* after[kBundleLines];               ///< the other slot
+  T* smallest;                          ///< [line], smallest cost of the predecessor, then of the last pixel
 };
 
 /// Smallest sums of one pixel: that of the winner, its index (the lowest on ties), and the smallest one that is more
