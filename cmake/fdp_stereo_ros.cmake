@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# The nodelet and its tools. Everything but the topics (disparity_nodelet.cpp) is tested without a roscore.
+# The nodelet and its tools. Everything but what needs a node is tested without a roscore.
 add_library(fdp_stereo_nodelet
   src/ros/camera.cpp
   src/ros/conversions.cpp
@@ -13,7 +13,9 @@ add_library(fdp_stereo_nodelet
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp
   src/ros/frame_processor.cpp
+  src/ros/output_topics.cpp
   src/ros/node_status.cpp
+  src/ros/node_reporter.cpp
   src/ros/periodic_task.cpp
   src/ros/diagnosis.cpp
   src/ros/thread_priority.cpp

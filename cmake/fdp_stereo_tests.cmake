@@ -69,7 +69,7 @@ add_test(NAME docs_parameters_are_current
 set_tests_properties(docs_parameters_are_current PROPERTIES LABELS docs)
 
 # The linters of scripts/lint.sh; tidy reads the compile commands of this build.
-foreach(check format shell catkin tidy)
+foreach(check format functions shell catkin tidy)
   add_test(NAME lint_${check} COMMAND ${PROJECT_SOURCE_DIR}/scripts/lint.sh ${check} ${PROJECT_BINARY_DIR})
   set_tests_properties(lint_${check} PROPERTIES LABELS lint)
 endforeach()

@@ -48,10 +48,4 @@ struct DisparityAxis {
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           DisparityAxis axis, CostVolume& volume);
 
-/// Seeds and how they are spread.
-struct SeedPrior {
-  const Seeds& seeds;
-  DisparityPropagationParams params;
-};
-
 }  // namespace fdp_stereo

@@ -63,7 +63,8 @@ class Pipeline {
   struct Frame;
   RowAlignment alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair);
   void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
-  void spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume);
+  double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
+                     CostVolume& volume) const;
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void expandPlanes(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void refine(Frame& frame, PipelineResult& result) const;

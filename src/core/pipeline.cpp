@@ -175,7 +175,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   buildSeeds(frame, scaling.shrink(external), result);
   clock.done("sparse_disparity");
 
-  spreadSeeds(frame, result, state_->volume);
+  result.propagated_share = spreadSeeds(result, frame.pair.left, false, {frame.search.min, 1}, state_->volume);
   clock.done("disparity_propagation");
 
   optimize(frame, result, cancel);
@@ -216,16 +216,17 @@ void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& r
       quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
 }
 
-/// Spreads the seeds in the costs of the left view; expandPlanes() does so in those of its own.
-void Pipeline::spreadSeeds(const Frame& frame, PipelineResult& result, CostVolume& volume) {
-  if (!params_.disparity_propagation.enabled) return;
-  const DisparityAxis axis{frame.search.min, 1};
-  result.propagated_share =
-      propagateDisparity(result.seeds, frame.pair.left, params_.disparity_propagation, axis, volume);
-  if (!wantsQuasiDense(params_)) return;
-  const double share =
-      propagateDisparity(result.quasi_dense_seeds, frame.pair.left, surfacesOf(params_.quasi_dense), axis, volume);
-  result.propagated_share = std::max(result.propagated_share, share);
+/// Spreads the seeds in the costs of a view; returns the share of the pixels whose costs they changed.
+double Pipeline::spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
+                             CostVolume& volume) const {
+  if (!params_.disparity_propagation.enabled) return 0.0;
+  const auto spread = [&](const Seeds& seeds, const DisparityPropagationParams& params) {
+    return mirrored ? propagateDisparity(mirrorSeeds(seeds, view.cols), view, params, axis, volume)
+                    : propagateDisparity(seeds, view, params, axis, volume);
+  };
+  const double share = spread(result.seeds, params_.disparity_propagation);
+  if (!wantsQuasiDense(params_)) return share;
+  return std::max(share, spread(result.quasi_dense_seeds, surfacesOf(params_.quasi_dense)));
 }
 
 void Pipeline::optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel) {
@@ -246,15 +247,10 @@ void Pipeline::expandPlanes(Frame& frame, PipelineResult& result, const std::ato
     state_->semi_global.match(state_->volume, frame.guide, params_.semi_global, initial);
   }
   const auto finer_costs = [&](ExpandedView side, int steps, CostVolume& volume) {
-    const bool left = side == ExpandedView::kLeft;
-    const StereoPair pair = left ? frame.pair : mirrorPair(frame.pair);
+    const bool mirrored = side == ExpandedView::kRight;
+    const StereoPair pair = mirrored ? mirrorPair(frame.pair) : frame.pair;
     computeSubpixelVolume(pair, frame.search, params_.matching_cost, steps, volume);
-    const auto seen = [&](const Seeds& seeds) { return left ? seeds : mirrorSeeds(seeds, pair.left.cols); };
-    if (!params_.disparity_propagation.enabled) return;
-    const DisparityAxis axis{frame.search.min, steps};
-    propagateDisparity(seen(result.seeds), pair.left, params_.disparity_propagation, axis, volume);
-    if (!wantsQuasiDense(params_)) return;
-    propagateDisparity(seen(result.quasi_dense_seeds), pair.left, surfacesOf(params_.quasi_dense), axis, volume);
+    spreadSeeds(result, pair.left, mirrored, {frame.search.min, steps}, volume);
   };
   const LocalExpansionInput input{state_->volume, frame.pair, result.seeds, initial, finer_costs, cancel, progress_};
   expandLocally(input, params_.local_expansion, frame.optimized);

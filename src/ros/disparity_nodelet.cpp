@@ -1,24 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Topics only: what is computed is in frame_processor, what is told in node_status.
+// Brings the parts together: what is computed is in frame_processor, what is told in node_reporter.
+#include <array>
 #include <chrono>
 #include <memory>
 #include <mutex>
 #include <new>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/exception.h>
 #include <image_transport/image_transport.h>
 #include <nodelet/nodelet.h>
-#include <ros/master.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
-#include "node_status.hpp"
+#include "node_reporter.hpp"
+#include "output_topics.hpp"
 #include "pair_synchronizer.hpp"
-#include "periodic_task.hpp"
 #include "reconfigure_server.hpp"
 #include "seed_sources.hpp"
 #include "stamps.hpp"
@@ -37,12 +36,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLongestTolerance = 60.0;  // s
 constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr double kWatchPeriod = 15.0;       // s
-constexpr auto kLogPeriod = std::chrono::seconds(30);
-constexpr std::size_t kMaxLogLines = 20;
 constexpr char kOutOfMemory[] =
     "out of memory; lower disparity_range or scale, and max_memory_mb to what this machine has";
-
-double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
 
 PairSynchronizerParams readSynchronizerParams(StartParams& start, const std::function<void(std::string)>& warn) {
   PairSynchronizerParams params;
@@ -61,11 +56,12 @@ PairSynchronizerParams readSynchronizerParams(StartParams& start, const std::fun
   return params;
 }
 
-/// s; the fallback where what is given is no sensible period.
-std::chrono::duration<double> periodOf(double wanted_s, double fallback_s) {
+/// The fallback where what is given is no sensible period.
+NodeReporter::Seconds readPeriod(StartParams& start, const std::string& name, double fallback_s) {
   constexpr double kShortest = 0.02;   // s
   constexpr double kLongest = 3600.0;  // s
-  return std::chrono::duration<double>(wanted_s >= kShortest && wanted_s <= kLongest ? wanted_s : fallback_s);
+  const double wanted_s = start.param(name, fallback_s);
+  return NodeReporter::Seconds(wanted_s >= kShortest && wanted_s <= kLongest ? wanted_s : fallback_s);
 }
 
 }  // namespace
@@ -79,11 +75,8 @@ class DisparityNodelet : public nodelet::Nodelet {
   void onInit() override;
   void start();
   void release();
-  void nameInputs();
-  void startReports(std::chrono::duration<double> diagnostic_period, std::chrono::duration<double> watch_period);
   void advertise();
   void onSubscriberChange();
-  WantedOutputs wanted() const;
   void subscribe();
   void subscribeImages(const ros::TransportHints& hints);
   void unsubscribe();
@@ -96,17 +89,10 @@ class DisparityNodelet : public nodelet::Nodelet {
 
   void work(const StereoFrame& frame, const std::atomic<bool>& cancel);
   bool tooOld(const StereoFrame& frame, const NodeSettings& settings);
-  void publish(const FrameOutput& output);
-  void recordSuccess(const StereoFrame& frame, FrameOutput& output, Clock::time_point start, unsigned revision);
-  void recordFailure(const std::string& problem);
+  void warn(const std::string& text) { reporter_.warn(text); }
+  void complete(NodeStatus& status);
 
-  bool isNew(const std::string& text);
-  void warn(const std::string& text);
-  NodeStatus snapshot();
-  void onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& diagnostics);
-  void watch();
-
-  StereoTopics topics_;
+  std::array<std::string, 4> input_names_;  ///< resolved, in the order of PairSynchronizer::Input
   std::unique_ptr<ReconfigureServer> reconfigure_;
   std::unique_ptr<SeedSources> seeds_;
   std::unique_ptr<FrameProcessor> processor_;
@@ -121,18 +107,9 @@ class DisparityNodelet : public nodelet::Nodelet {
   // Outputs. The mutex is held over advertise: a subscriber may come before the publisher is stored.
   std::mutex connect_mutex_;
   bool subscribed_ = false;
-  ros::Publisher disparity_;
-  image_transport::CameraPublisher depth_;
-  image_transport::Publisher depth_by_old_name_, confidence_, seeds_image_, disparity_color_;
+  OutputTopics outputs_;
 
-  std::mutex status_mutex_;
-  NodeStatus status_;
-  NodeStatus diagnosed_, watched_;  ///< at the last report
-  Clock::time_point diagnosed_at_, watched_at_;
-  LogThrottle throttle_{kLogPeriod, kMaxLogLines};
-  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
-  std::unique_ptr<PeriodicTask> diagnostics_task_, watch_task_;
-
+  NodeReporter reporter_;
   std::unique_ptr<FrameWorker> worker_;
 };
 
@@ -142,15 +119,8 @@ DisparityNodelet::~DisparityNodelet() { release(); }
 /// they use: shutdown() waits for a callback that runs in another thread.
 void DisparityNodelet::release() {
   if (worker_) worker_->stop();
-  disparity_.shutdown();
-  depth_.shutdown();
-  depth_by_old_name_.shutdown();
-  confidence_.shutdown();
-  seeds_image_.shutdown();
-  disparity_color_.shutdown();
-  diagnostics_task_.reset();
-  diagnostics_.reset();
-  watch_task_.reset();
+  outputs_.shutdown();
+  reporter_.stop();
   if (worker_) unsubscribe();
   worker_.reset();
   seeds_.reset();
@@ -170,89 +140,51 @@ void DisparityNodelet::onInit() {
 
 void DisparityNodelet::start() {
   ros::NodeHandle& node = getNodeHandle();
-  nameInputs();
+  reporter_.setName(getName());
+  input_names_ = {node.resolveName("left/image_rect"), node.resolveName("left/camera_info"),
+                  node.resolveName("right/image_rect"), node.resolveName("right/camera_info")};
   StartParams params(getPrivateNodeHandle());
   const auto say = [this](const std::string& message) { warn(message); };
   const PairSynchronizerParams sync = readSynchronizerParams(params, say);
-  status_.approximate_sync = sync.approximate;
   params.param<std::string>("image_transport", "raw");  // which image_transport reads itself
-  const auto diagnostic_period = periodOf(params.param("diagnostic_period", kDiagnosticsPeriod), kDiagnosticsPeriod);
-  const auto watch_period = periodOf(params.param("watch_period", kWatchPeriod), kWatchPeriod);
+  const NodeReporter::Periods periods{readPeriod(params, "diagnostic_period", kDiagnosticsPeriod),
+                                      readPeriod(params, "watch_period", kWatchPeriod)};
   seeds_ = std::make_unique<SeedSources>(node, params);
   reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), params.names(), say);
 
   synchronizer_ = std::make_unique<PairSynchronizer>(
       sync, PairSynchronizer::Callbacks{[this](const StereoFrame& frame) { onPair(frame); }, [this] { onRestart(); },
                                         [this](PairSynchronizer::Input input, const ros::Time& stamp) {
-                                          warn(text(status_.inputs[input].topic, ": stamp ", stamp.toSec(),
+                                          warn(text(input_names_[input], ": stamp ", stamp.toSec(),
                                                     " s is too far from the others'; check the clock of the camera"));
                                         }});
-  processor_ = std::make_unique<FrameProcessor>(
-      topics_, [this](const SeedRequest& request) { return seeds_->collect(request); });
+  const auto& [left, left_info, right, right_info] = input_names_;
+  processor_ =
+      std::make_unique<FrameProcessor>(StereoTopics{left, right, left_info, right_info},
+                                       [this](const SeedRequest& request) { return seeds_->collect(request); });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
-  startReports(diagnostic_period, watch_period);
+  reporter_.update([&](NodeStatus& status) { status.approximate_sync = sync.approximate; });
+  reporter_.start(node, getPrivateNodeHandle(), periods, [this](NodeStatus& status) { complete(status); });
   advertise();
-}
-
-void DisparityNodelet::nameInputs() {
-  const ros::NodeHandle& node = getNodeHandle();
-  topics_ = {node.resolveName("left/image_rect"), node.resolveName("right/image_rect"),
-             node.resolveName("left/camera_info"), node.resolveName("right/camera_info")};
-  status_.inputs[PairSynchronizer::kLeftImage].topic = topics_.left_image;
-  status_.inputs[PairSynchronizer::kLeftInfo].topic = topics_.left_info;
-  status_.inputs[PairSynchronizer::kRightImage].topic = topics_.right_image;
-  status_.inputs[PairSynchronizer::kRightInfo].topic = topics_.right_info;
-}
-
-void DisparityNodelet::startReports(std::chrono::duration<double> diagnostic_period,
-                                    std::chrono::duration<double> watch_period) {
-  diagnosed_at_ = watched_at_ = Clock::now();
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
-  diagnostics_->setHardwareID("none");
-  diagnostics_->add("Disparity", this, &DisparityNodelet::onDiagnostics);
-  diagnostics_task_ = std::make_unique<PeriodicTask>(diagnostic_period, [this] { diagnostics_->force_update(); });
-  // The question to a master that is out of reach may take long: not in the queue of the images.
-  watch_task_ = std::make_unique<PeriodicTask>(watch_period, [this] { watch(); });
 }
 
 void DisparityNodelet::advertise() {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
   ros::NodeHandle& node = getNodeHandle();
   transport_ = std::make_unique<image_transport::ImageTransport>(node);
-  const ros::SubscriberStatusCallback changed = [this](const ros::SingleSubscriberPublisher&) { onSubscriberChange(); };
-  const image_transport::SubscriberStatusCallback image_changed =
-      [this](const image_transport::SingleSubscriberPublisher&) { onSubscriberChange(); };
-  disparity_ = node.advertise<stereo_msgs::DisparityImage>("disparity", 1, changed, changed);
-  // As image_transport's CameraSubscriber finds it: depth/image_rect with depth/camera_info.
-  depth_ = transport_->advertiseCamera("depth/image_rect", 1, image_changed, image_changed, changed, changed);
-  depth_by_old_name_ = transport_->advertise("depth", 1, image_changed, image_changed);
-  confidence_ = transport_->advertise("confidence", 1, image_changed, image_changed);
-  seeds_image_ = transport_->advertise("seeds/image", 1, image_changed, image_changed);
-  disparity_color_ = transport_->advertise("disparity_color", 1, image_changed, image_changed);
+  outputs_.advertise(node, [this] { onSubscriberChange(); });
 }
 
 void DisparityNodelet::onSubscriberChange() {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
-  if (wanted().any() == subscribed_) return;
+  if (outputs_.wanted().any() == subscribed_) return;
   subscribed_ = !subscribed_;
   if (subscribed_) {
     subscribe();
   } else {
     unsubscribe();
   }
-  const std::lock_guard<std::mutex> status_lock(status_mutex_);
-  status_.subscribed = subscribed_;
-}
-
-WantedOutputs DisparityNodelet::wanted() const {
-  WantedOutputs outputs;
-  outputs.disparity = disparity_.getNumSubscribers() > 0;
-  outputs.depth = depth_.getNumSubscribers() + depth_by_old_name_.getNumSubscribers() > 0;
-  outputs.confidence = confidence_.getNumSubscribers() > 0;
-  outputs.seeds = seeds_image_.getNumSubscribers() > 0;
-  outputs.disparity_color = disparity_color_.getNumSubscribers() > 0;
-  return outputs;
 }
 
 void DisparityNodelet::subscribe() {
@@ -299,7 +231,7 @@ void DisparityNodelet::onInput(PairSynchronizer::Input input, const MessagePtr& 
   try {
     synchronizer_->add(input, message);
   } catch (const std::bad_alloc&) {  // of the one message: the manager goes on
-    recordFailure(kOutOfMemory);
+    reporter_.recordFailure(kOutOfMemory);
   }
 }
 
@@ -310,11 +242,10 @@ void DisparityNodelet::onRestart() {
 
 void DisparityNodelet::onPair(const StereoFrame& frame) {
   const bool over_rate = overRate(frame.left->header.stamp);
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    ++status_.pairs;
-    if (over_rate) ++status_.over_rate;
-  }
+  reporter_.update([&](NodeStatus& status) {
+    ++status.pairs;
+    if (over_rate) ++status.over_rate;
+  });
   if (!over_rate) worker_->submit(frame);
 }
 
@@ -336,115 +267,36 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
       warn("nice cannot be lowered without privileges; restart the node");
     }
     if (forget_.exchange(false)) processor_->reset();
-    FrameOutput output = processor_->process(frame, *settings, wanted(), &cancel);
+    FrameOutput output = processor_->process(frame, *settings, outputs_.wanted(), &cancel);
     if (cancel) return;
-    publish(output);
-    recordSuccess(frame, output, start, settings->revision);
+    outputs_.publish(output);
+    reporter_.recordSuccess(frame, std::move(output.report), start, settings->revision);
   } catch (const std::bad_alloc&) {
-    recordFailure(kOutOfMemory);
+    reporter_.recordFailure(kOutOfMemory);
   } catch (const cv::Exception& error) {
-    recordFailure(error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what());
+    reporter_.recordFailure(error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what());
   } catch (const std::exception& error) {
-    recordFailure(error.what());
+    reporter_.recordFailure(error.what());
   }
 }
 
 bool DisparityNodelet::tooOld(const StereoFrame& frame, const NodeSettings& settings) {
   const double max_age = settings.node.max_age_s;
   if (max_age <= 0.0 || secondsBetween(frame.left->header.stamp, ros::Time::now()) <= max_age) return false;
-  const std::lock_guard<std::mutex> lock(status_mutex_);
-  ++status_.too_old;
+  reporter_.update([](NodeStatus& status) { ++status.too_old; });
   return true;
 }
 
-void DisparityNodelet::publish(const FrameOutput& output) {
-  if (output.disparity) disparity_.publish(output.disparity);
-  if (output.depth) {
-    depth_.publish(output.depth, output.depth_info);
-    depth_by_old_name_.publish(output.depth);
-  }
-  if (output.confidence) confidence_.publish(output.confidence);
-  if (output.seeds) seeds_image_.publish(output.seeds);
-  if (output.disparity_color) disparity_color_.publish(output.disparity_color);
-}
-
-void DisparityNodelet::recordSuccess(const StereoFrame& frame, FrameOutput& output, Clock::time_point start,
-                                     unsigned revision) {
-  const auto now = Clock::now();
-  for (const std::string& warning : output.report.warnings) warn(warning);
-  for (const std::string& note : output.report.notes) {
-    if (isNew(note)) NODELET_INFO("%s", note.c_str());
-  }
-  const std::lock_guard<std::mutex> lock(status_mutex_);
-  ++status_.processed;
-  status_.error_is_current = false;
-  status_.processing_ms = milliseconds(now - start);
-  status_.latency_ms = milliseconds(now - frame.arrival);
-  status_.age_ms = secondsBetween(frame.left->header.stamp, ros::Time::now()) * 1e3;
-  status_.apart_ms = secondsBetween(frame.left->header.stamp, frame.right->header.stamp) * 1e3;
-  status_.revision = revision;
-  status_.frame = std::move(output.report);
-}
-
-void DisparityNodelet::recordFailure(const std::string& problem) {
-  warn(problem);
-  const std::lock_guard<std::mutex> lock(status_mutex_);
-  ++status_.failed;
-  status_.last_error = problem;
-  status_.error_is_current = true;
-}
-
-bool DisparityNodelet::isNew(const std::string& text) {
-  const std::lock_guard<std::mutex> lock(status_mutex_);
-  return throttle_.allow(text, Clock::now());
-}
-
-void DisparityNodelet::warn(const std::string& text) {
-  if (isNew(text)) NODELET_WARN("%s", text.c_str());
-}
-
-NodeStatus DisparityNodelet::snapshot() {
-  const std::lock_guard<std::mutex> connect_lock(connect_mutex_);
-  const std::lock_guard<std::mutex> lock(status_mutex_);
+/// What the status needs from the parts.
+void DisparityNodelet::complete(NodeStatus& status) {
+  const std::lock_guard<std::mutex> lock(connect_mutex_);
+  status.subscribed = subscribed_;
+  const std::array<std::uint32_t, 4> publishers{left_image_.getNumPublishers(), left_info_.getNumPublishers(),
+                                                right_image_.getNumPublishers(), right_info_.getNumPublishers()};
   const PairSynchronizer::Counts counts = synchronizer_->counts();
-  for (std::size_t i = 0; i < counts.size(); ++i) status_.inputs[i].count = counts[i];
-  if (subscribed_) {
-    status_.inputs[PairSynchronizer::kLeftImage].publishers = left_image_.getNumPublishers();
-    status_.inputs[PairSynchronizer::kRightImage].publishers = right_image_.getNumPublishers();
-    status_.inputs[PairSynchronizer::kLeftInfo].publishers = left_info_.getNumPublishers();
-    status_.inputs[PairSynchronizer::kRightInfo].publishers = right_info_.getNumPublishers();
-  }
-  status_.dropped = worker_->dropped();
-  status_.waiting = worker_->waiting();
-  return status_;
-}
-
-void DisparityNodelet::onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& diagnostics) {
-  const NodeStatus status = snapshot();
-  const auto now = Clock::now();
-  describeStatus(status, diagnosed_, milliseconds(now - diagnosed_at_) / 1e3, diagnostics);
-  diagnosed_ = status;
-  diagnosed_at_ = now;
-}
-
-void DisparityNodelet::watch() {
-  const bool lost = !ros::master::check();
-  bool changed = false;
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    changed = lost != status_.master_lost;
-    status_.master_lost = lost;
-  }
-  if (changed && lost) NODELET_ERROR("the ROS master does not answer; connected topics go on");
-  if (changed && !lost) {
-    NODELET_WARN("the ROS master is back; if it was restarted it does not know this node: restart it (respawn)");
-  }
-  const NodeStatus status = snapshot();
-  const auto now = Clock::now();
-  const std::string silence = describeSilence(status, watched_, milliseconds(now - watched_at_) / 1e3);
-  if (!silence.empty()) NODELET_WARN("%s", silence.c_str());
-  watched_ = status;
-  watched_at_ = now;
+  for (std::size_t i = 0; i < counts.size(); ++i) status.inputs[i] = {input_names_[i], publishers[i], counts[i]};
+  status.dropped = worker_->dropped();
+  status.waiting = worker_->waiting();
 }
 
 }  // namespace fdp_stereo

@@ -3,7 +3,6 @@
 #include "camera.hpp"
 
 #include <cmath>
-#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -14,20 +13,8 @@ namespace fdp_stereo {
 namespace {
 
 using test::cameraInfo;
-
-/// The text of the exception, "" where none is thrown.
-std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expectContains(const std::string& text, const std::vector<std::string>& parts) {
-  for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' in: " << text;
-}
+using test::errorOf;
+using test::expectContains;
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;

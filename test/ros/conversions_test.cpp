@@ -3,7 +3,6 @@
 #include "conversions.hpp"
 
 #include <cmath>
-#include <functional>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -13,6 +12,8 @@
 namespace fdp_stereo {
 namespace {
 
+using test::errorOf;
+using test::expectContains;
 using test::imageMessage;
 
 constexpr char kTopic[] = "/cam/left/image_rect";
@@ -26,20 +27,6 @@ cv::Mat noise(int type, int rows = 12, int cols = 18) {
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
-}
-
-/// The text of the exception, "" where none is thrown.
-std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expectContains(const std::string& text, const std::vector<std::string>& parts) {
-  for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' in: " << text;
 }
 
 TEST(DecodeImage, NativeEncodingsShareTheMessage) {

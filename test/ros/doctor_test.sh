@@ -4,27 +4,13 @@
 #
 # doctor_test.sh DEVEL: doctor.launch beside a node and a recording that plays: all well, exchanged images, a throttled
 # camera. It ends by itself and without calling that a death.
-set -euo pipefail
-export PATH="/usr/bin:/bin:$PATH"
-set +u
-# shellcheck source=/dev/null
-. "$1/setup.bash"
-set -u
-port=11420
-work="$(mktemp -d)"
-export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work" ROS_LOG_DIR="$work"
-trap 'kill "${node:-}" "${play:-}" "${throttle:-}" "${master:-}" 2>/dev/null || true; rm -rf "$work"' EXIT
+# shellcheck source=test/ros/own_master.sh
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11420
 bag="$1/share/fdp_stereo/sample/motorcycle.bag"
 
-rosmaster --core -p "$port" </dev/null >"$work/master.log" 2>&1 &
-master=$!
-for _ in $(seq 200); do
-  if rosparam list >/dev/null 2>&1; then break; fi
-  sleep 0.1
-done
+start_master
 ROS_NAMESPACE=stereo "$1/lib/fdp_stereo/disparity_node" left/image_rect:=left/image_raw right/image_rect:=right/image_raw \
   </dev/null >"$work/node.log" 2>&1 &
-node=$!
 
 play() {
   rosbag play -q -l "$bag" "$@" </dev/null >/dev/null 2>&1 &

@@ -3,27 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # master_gone_test.sh DEVEL: the ROS master dies and comes back; the node lives on and says so.
-set -euo pipefail
-export PATH="/usr/bin:/bin:$PATH"
-set +u
-# shellcheck source=/dev/null
-. "$1/setup.bash"
-set -u
-port=11417
-work="$(mktemp -d)"
-export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work"
-trap 'kill "${node:-}" "${master:-}" 2>/dev/null || true; rm -rf "$work"' EXIT
+# shellcheck source=test/ros/own_master.sh
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11417
 
-start_master() {
-  rosmaster --core -p "$port" </dev/null >"$work/master.log" 2>&1 &
-  master=$!
-  for _ in $(seq 200); do
-    if rosparam list >/dev/null 2>&1; then return; fi
-    sleep 0.1
-  done
-  echo "the master does not start" >&2
-  exit 1
-}
 wait_for() {
   for _ in $(seq 300); do
     if grep -q "$1" "$work/node.log"; then return; fi

@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include <gtest/gtest.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <boost/make_shared.hpp>
@@ -15,6 +19,20 @@
 
 /// Messages for tests, written apart from src/ros/conversions.cpp.
 namespace fdp_stereo::test {
+
+/// The text of the exception, "" where none is thrown.
+inline std::string errorOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline void expectContains(const std::string& text, const std::vector<std::string>& parts) {
+  for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' in: " << text;
+}
 
 inline sensor_msgs::Image imageMessage(const cv::Mat& pixels, const std::string& encoding, std::uint32_t padding = 0) {
   sensor_msgs::Image message;

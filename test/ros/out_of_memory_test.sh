@@ -4,28 +4,13 @@
 #
 # out_of_memory_test.sh DEVEL [MB...]: the node under ten limits of its address space. Whether it cannot start, loses pairs or has
 # enough, it says what is wrong and no signal ends it.
-set -euo pipefail
-export PATH="/usr/bin:/bin:$PATH"
-set +u
-# shellcheck source=/dev/null
-. "$1/setup.bash"
-set -u
-port=11419
-work="$(mktemp -d)"
-export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work" ROS_LOG_DIR="$work"
 export MALLOC_ARENA_MAX="${MALLOC_ARENA_MAX:-2}" # an arena reserves 64 MB of addresses
-trap 'kill "${node:-}" "${play:-}" "${reader:-}" "${master:-}" 2>/dev/null || true; rm -rf "$work"' EXIT
+# shellcheck source=test/ros/own_master.sh
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11419
+start_master
 
-rosmaster --core -p "$port" </dev/null >"$work/master.log" 2>&1 &
-master=$!
-for _ in $(seq 200); do
-  if rosparam list >/dev/null 2>&1; then break; fi
-  sleep 0.1
-done
 rosbag play -q -l "$1/share/fdp_stereo/sample/motorcycle.bag" </dev/null >"$work/play.log" 2>&1 &
-play=$!
 rostopic hz /stereo/disparity </dev/null >"$work/reader.log" 2>&1 &
-reader=$!
 
 # Until the node has ended, failed with a pair, or given one.
 settled() {

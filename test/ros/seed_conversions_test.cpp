@@ -13,6 +13,8 @@
 namespace fdp_stereo {
 namespace {
 
+using test::errorOf;
+
 const PinholeCamera kLeft{200.0, 200.0, 80.0, 60.0, cv::Size(160, 120)};
 const StereoGeometry kGeometry{200.0, 0.1, -5.0};
 constexpr char kTopic[] = "seeds/points";
@@ -30,16 +32,6 @@ sensor_msgs::PointCloud2 makeCloud(const std::vector<cv::Point3f>& points) {
     ++xyz;
   }
   return cloud;
-}
-
-template <typename Call>
-std::string errorOf(Call&& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(ProjectSeeds, PixelAndDisparityOfAPoint) {
