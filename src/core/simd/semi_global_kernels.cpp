@@ -92,8 +92,8 @@ inline void smallestLanes(const Half<T> (&v)[4], T (&smallest)[4]) {
 
 #undef FDP_STEREO_PICK
 
-/// What one path adds to the costs of kLanes disparities from entry i on. All path costs fit T by the choice of the cost
-/// step; only the sums of the first three paths may have to stop at the largest T.
+/// What one path adds to the costs of kLanes disparities from entry i on. All path costs fit T by the choice of the
+/// cost step; only the sums of the first three paths may have to stop at the largest T.
 template <typename T, int kLanes, PathSum kSum>
 inline typename Lanes<T, kLanes>::Vector stepLanes(const PathPixel<T>& at, int i) {
   using L = Lanes<T, kLanes>;
@@ -187,6 +187,7 @@ void follow(const PathBundle<T>& bundle, int lines, PathSum sum) {
 using Signed = Full<std::int16_t>;
 constexpr std::int16_t kNoSum = 32767;
 constexpr int kSumLanes = kVectorBytes / 2;
+static_assert(kSumLanes <= kSumsRead);
 
 /// kSumLanes sums, kNoSum where the index is not below `count`.
 inline Signed loadSums(const std::uint16_t* sums, const Signed& index, int count) {

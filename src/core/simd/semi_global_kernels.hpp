@@ -26,19 +26,19 @@ enum class PathSum {
 /// even number of pixels the last one is in `before` again, after an odd number in `after`.
 template <typename T>
 struct PathBundle {
-  int length;                         ///< pixels of each path
-  int count;                          ///< entries per pixel, a multiple of 16
-  std::ptrdiff_t step;                ///< from pixel to pixel, in entries of the costs
-  std::ptrdiff_t sums_step;           ///< the same of excess and totals
-  std::ptrdiff_t p2_step;             ///< from pixel to pixel, in entries of p2
-  T p1;                               ///< penalty of a step by one disparity
-  const T* costs[kBundleLines];       ///< raw matching costs of the first pixel
+  int length;                           ///< pixels of each path
+  int count;                            ///< entries per pixel, a multiple of 16
+  std::ptrdiff_t step;                  ///< from pixel to pixel, in entries of the costs
+  std::ptrdiff_t sums_step;             ///< the same of excess and totals
+  std::ptrdiff_t p2_step;               ///< from pixel to pixel, in entries of p2
+  T p1;                                 ///< penalty of a step by one disparity
+  const T* costs[kBundleLines];         ///< raw matching costs of the first pixel
   T* excess[kBundleLines];              ///< sums of L - C
   std::uint16_t* totals[kBundleLines];  ///< kLast only
-  const T* p2[kBundleLines];          ///< penalty of any other step
-  T* before[kBundleLines];            ///< slot of the predecessor
-  T* after[kBundleLines];             ///< the other slot
-  T* smallest;                        ///< [line], smallest cost of the predecessor, then of the last pixel
+  const T* p2[kBundleLines];            ///< penalty of any other step
+  T* before[kBundleLines];              ///< slot of the predecessor
+  T* after[kBundleLines];               ///< the other slot
+  T* smallest;                          ///< [line], smallest cost of the predecessor, then of the last pixel
 };
 
 /// Smallest sums of one pixel: that of the winner, its index (the lowest on ties), and the smallest one that is more
@@ -56,13 +56,15 @@ struct Minima {
   const std::uint16_t* after;
 };
 
+constexpr int kSumsRead = 32;  ///< findWinners() reads so many sums at once, also beyond the last pixel
+
 /// Inner loops of semi-global matching, compiled per instruction set.
 struct SemiGlobalKernels {
   /// L(p, d) = C + min(L(d), L(d - 1) + P1, L(d + 1) + P1, min L + P2) - min L along 1 or kBundleLines paths.
   void (*followU8)(const PathBundle<std::uint8_t>& bundle, int lines, PathSum sum);
   void (*followU16)(const PathBundle<std::uint16_t>& bundle, int lines, PathSum sum);
   /// Winners of `width` pixels among sums[x * stride .. x * stride + count - 1]; the entries up to the next multiple of
-  /// 16 are read, too.
+  /// kSumsRead are read, too.
   void (*findWinners)(const std::uint16_t* sums, int stride, int count, int width, Winner* winners);
   /// The other view's best: where values[i] < best[i], best[i] = values[i] and best_index[i] = i.
   void (*keepSmaller)(const std::uint16_t* values, int count, std::uint16_t* best, std::uint16_t* best_index);
