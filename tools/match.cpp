@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
-#include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/pipeline.hpp"
 #include "output_files.hpp"
@@ -114,8 +113,7 @@ void writeOutputs(const Options& options, const PipelineParams& params, const cv
     writeImage(options.row_alignment, drawRowAlignment(left, result.matches, result.row_alignment));
   }
   if (!options.draw_seeds.empty()) {
-    const cv::Mat shown = prepareImages(left, left).left;
-    writeImage(options.draw_seeds, drawSeeds(shown, allSeeds(result), params.search));
+    writeImage(options.draw_seeds, drawSeeds(result.left, allSeeds(result), params.search));
   }
   if (!options.timings.empty()) writeFile(options.timings, timingsJson(result, params));
 }

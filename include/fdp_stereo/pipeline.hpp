@@ -26,6 +26,7 @@ struct PipelineStats {
 struct PipelineResult : PipelineStats {
   cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
   cv::Mat confidence;  ///< CV_32FC1, 0..1
+  cv::Mat left;        ///< CV_8UC1 or CV_8UC3, the left image in 8 bits; shares the one given where that is so
   FeatureMatches matches;
   Seeds seeds;
   Seeds rejected_seeds;
@@ -55,12 +56,13 @@ class Pipeline {
   const PipelineParams& params() const { return params_; }
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
-  /// Forgets what was learnt from earlier frames (row alignment).
+  /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values).
   void reset();
 
  private:
   struct State;
   struct Frame;
+  StereoPair prepare(const cv::Mat& left, const cv::Mat& right);
   RowAlignment alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair);
   void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
   double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,

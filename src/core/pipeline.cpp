@@ -119,6 +119,9 @@ SparseDisparity allSeeds(const PipelineResult& result) {
 
 /// What is kept from pair to pair.
 struct Pipeline::State {
+  cv::Size size;  ///< of the last pair as it was given
+  int type = -1;
+  ValueRange values;
   RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
   CostVolume volume;
@@ -147,7 +150,17 @@ void Pipeline::setParams(const PipelineParams& params) {
   params_ = params;
 }
 
-void Pipeline::reset() { state_->row_alignment.reset(); }
+void Pipeline::reset() {
+  state_->row_alignment.reset();
+  state_->values = {};
+}
+
+StereoPair Pipeline::prepare(const cv::Mat& left, const cv::Mat& right) {
+  if (left.size() != state_->size || left.type() != state_->type) state_->values = {};
+  state_->size = left.size();
+  state_->type = left.type();
+  return prepareImages(left, right, state_->values);
+}
 
 PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Seeds& external,
                              const std::atomic<bool>* cancel) {
@@ -155,7 +168,8 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   PipelineResult result;
   StageClock clock(result.times);
 
-  const StereoPair given = prepareImages(left, right);
+  const StereoPair given = prepare(left, right);
+  result.left = given.left;
   const Scaling scaling(given.left.size(), params_.scale);
   Frame frame{scaling.shrink(given), scaling.shrink(params_.search), {}, {}, {}};
   checkMemory(params_, frame.pair.left.size(), frame.search);
@@ -206,7 +220,7 @@ void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& r
   result.rejected_seeds = std::move(sparse.rejected);
   cv::Mat buffer;
   frame.guide = eightBitGrey(frame.pair.left, frame.pair.left_grey, buffer);
-  frame.blind = blindPixels(frame.guide);
+  frame.blind = blindPixels(frame.pair.left_grey);
   for (const Seed& seed : result.seeds) {  // another sensor sees where the cameras do not
     if (seed.source == SeedSource::kFeature) continue;
     cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "evaluation/evaluation.hpp"
+#include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
@@ -13,13 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 8-bit BGR copy for display; 16-bit images are stretched to their largest value.
+/// 8-bit BGR copy for display.
 cv::Mat displayImage(const cv::Mat& image) {
-  cv::Mat shown;
-  double largest = 255.0;
-  if (image.depth() == CV_16U) cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-  image.convertTo(shown, CV_8U, 255.0 / std::max(1.0, largest));
-  if (shown.channels() == 1) cv::cvtColor(shown, shown, cv::COLOR_GRAY2BGR);
+  cv::Mat shown = toEightBit(image);
+  if (shown.channels() == 3) return shown.clone();
+  cv::cvtColor(shown, shown, cv::COLOR_GRAY2BGR);
   return shown;
 }
 

@@ -19,16 +19,6 @@ std::string describe(const cv::Mat& image) {
   return text(image.cols, " x ", image.rows, " px, ", image.depth() == CV_8U ? 8 : 16, " bit");
 }
 
-/// For display: the brightest value of 16 bits becomes white.
-cv::Mat toEightBit(const cv::Mat& image) {
-  if (image.depth() == CV_8U) return image;
-  double brightest = 0.0;
-  cv::minMaxLoc(image.reshape(1), nullptr, &brightest);
-  cv::Mat eight_bit;
-  image.convertTo(eight_bit, CV_8U, brightest > 0.0 ? 255.0 / brightest : 1.0);
-  return eight_bit;
-}
-
 /// A camera that is not at the origin of its frame.
 void describePlace(const PinholeCamera& left, const StereoFrame& frame, const std::string& topic, FrameReport& report) {
   if (left.tx == 0.0 && left.ty == 0.0) return;
@@ -101,7 +91,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
     output.depth_info = depthInfo(frame);
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);
-  if (wanted.seeds) output.seeds = toImageMessage(drawSeeds(toEightBit(left), allSeeds(result), range), header);
+  if (wanted.seeds) output.seeds = toImageMessage(drawSeeds(result.left, allSeeds(result), range), header);
   if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
   fillReport(result, output.report);
   return output;

@@ -141,6 +141,37 @@ TEST_P(EveryPreset, Takes16BitPairsAndNegativeRanges) {
   EXPECT_GT(cv::countNonZero(cv::abs(result.disparity - 6.0F) < 0.5F), 120 * 200 / 3);
 }
 
+TEST_P(EveryPreset, HotPixelsAndOffsetsOf16BitCostNothing) {
+  cv::Mat left;
+  cv::Mat right;
+  rendered().left.convertTo(left, CV_16U, 4.0, 1.0);
+  rendered().right.convertTo(right, CV_16U, 4.0, 1.0);
+  const auto right_share = [&](const cv::Mat& a, const cv::Mat& b) {
+    return cv::countNonZero(cv::abs(Pipeline(paramsOf(GetParam())).run(a, b).disparity - 6.0F) < 0.5F);
+  };
+  const int plain = right_share(left, right);
+  EXPECT_NEAR(right_share(left + cv::Scalar::all(1000), right + cv::Scalar::all(1000)), plain, 0.01 * plain);
+  left.at<cv::Vec3w>(5, 5) = cv::Vec3w::all(65535);
+  EXPECT_NEAR(right_share(left, right), plain, 0.01 * plain);
+}
+
+TEST(Pipeline, KeepsTheRangeOf16BitUntilAnotherCameraComes) {
+  cv::Mat grey;
+  cv::cvtColor(rendered().left, grey, cv::COLOR_BGR2GRAY);
+  Pipeline pipeline(paramsOf("fast"));
+  const auto shown = [&](double factor, const cv::Rect& part) {
+    cv::Mat image;
+    grey(part).convertTo(image, CV_16U, factor);
+    return pipeline.run(image, image).left;
+  };
+  const cv::Rect all(0, 0, grey.cols, grey.rows), half(0, 0, grey.cols / 2, grey.rows);
+  const cv::Mat first = shown(8.0, all);
+  EXPECT_LT(cv::mean(shown(7.8, all))[0], cv::mean(first)[0] - 1.0) << "the same range for a darker image";
+  EXPECT_TRUE(reference::sameBits(shown(8.0, all), first));
+  shown(8.0, half);
+  EXPECT_NEAR(cv::mean(shown(7.8, all))[0], cv::mean(first)[0], 1.0) << "a new range after another size";
+}
+
 TEST_P(EveryPreset, NamesItsStagesInOrder) {
   const PipelineResult result = Pipeline(paramsOf(GetParam())).run(rendered().left, rendered().right);
   std::vector<std::string> stages;

@@ -75,6 +75,22 @@ TEST(FrameProcessor, PlaneComesOutWithItsDepth) {
   EXPECT_TRUE(output.report.warnings.empty());
 }
 
+TEST(FrameProcessor, SeedsAreShownInDarkImagesWithHotPixels) {
+  const auto pair = test::planePair(160, 120, kPlaneDisparity);
+  Messages messages = goodMessages();
+  cv::Mat left, right;
+  pair.left.convertTo(left, CV_16U, 4.0, 1000.0);
+  pair.right.convertTo(right, CV_16U, 4.0, 1000.0);
+  left.at<std::uint16_t>(60, 80) = 65535;
+  messages.left = imageMessage(left, "mono16");
+  messages.right = imageMessage(right, "mono16");
+  const auto brightness = [](const Messages& m) {
+    const FrameOutput output = run(m);
+    return cv::mean(decodeImage(*output.seeds, "seeds/image"))[1];
+  };
+  EXPECT_NEAR(brightness(messages), brightness(goodMessages()), 10.0);
+}
+
 TEST(FrameProcessor, WhatNobodyWantsIsNotMade) {
   FrameProcessor processor({});
   const FrameOutput output = processor.process(goodMessages().frame(), settings(), {});

@@ -6,9 +6,9 @@
 
 namespace fdp_stereo {
 
-/// 255 where an image (CV_8UC1) holds nothing that could be matched, in black borders, covered lenses, blown-out skies
-/// and walls: every window of 5 x 5 equal px, or of 15 x 15 px within one grey level; the noise of a sensor is more
-/// than that. CV_8UC1.
+/// 255 where an image (grey, in its full depth of 8 or 16 bits) holds nothing that could be matched, in black borders,
+/// covered lenses, blown-out skies and walls: every window of 5 x 5 equal px, or of 15 x 15 px within one grey level;
+/// the noise of a sensor is more than that. CV_8UC1.
 cv::Mat blindPixels(const cv::Mat& grey);
 
 }  // namespace fdp_stereo

@@ -81,7 +81,7 @@ class Paths {
         memory_(memory) {
     const std::size_t pixels = static_cast<std::size_t>(width_) * rows.count;
     memory.excess.reserve(pixels * count_ * sizeof(T));
-    memory.totals.reserve(static_cast<std::size_t>(chunk) * rowEntries() * sizeof(std::uint16_t));
+    memory.totals.reserve((static_cast<std::size_t>(chunk) * rowEntries() + kSumsRead) * sizeof(std::uint16_t));
     memory.across.reserve((pixels + rows.count) * sizeof(T));
     memory.down.reserve((pixels + width_) * sizeof(T));
     memory.columns.reserve(2 * width_ * slot_ * sizeof(T));

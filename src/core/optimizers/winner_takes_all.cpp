@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/winner_takes_all.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "optimizers/disparity_selection.hpp"
 #include "parallel.hpp"
+#include "simd/semi_global_kernels.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -20,11 +22,11 @@ void takeWinnersOf(const CostVolume& volume, const WinnerTakesAllParams& params,
   const std::size_t row = static_cast<std::size_t>(volume.width()) * volume.stride();
   const auto makeScratch = [&] {
     return Scratch{DisparitySelection(volume, params.subpixel, params.uniqueness_ratio, 1),
-                   std::vector<std::uint16_t>(row)};
+                   std::vector<std::uint16_t>(row + kSumsRead)};
   };
   parallelFor(volume.height(), makeScratch, [&](int y, Scratch& scratch) {
     const T* costs = volume.at<T>(y, 0);
-    scratch.sums.assign(costs, costs + row);
+    std::copy_n(costs, row, scratch.sums.begin());
     scratch.selection.selectRow(y, scratch.sums.data(), output);
   });
 }

@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/row_alignment.hpp"
 
 namespace fdp_stereo {
@@ -14,12 +15,7 @@ constexpr double kArrowScale = 40.0;
 constexpr double kLongestArrowPx = 1.0;  // of residual: wrong matches would cross the picture
 
 cv::Mat toEightBitBgr(const cv::Mat& image) {
-  cv::Mat result = image;
-  if (image.depth() == CV_16U) {
-    double largest = 0.0;
-    cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-    image.convertTo(result, CV_8U, 255.0 / std::max(1.0, largest));
-  }
+  const cv::Mat result = toEightBit(image);
   if (result.channels() == 3) return result.clone();
   cv::Mat colour;
   cv::cvtColor(result, colour, cv::COLOR_GRAY2BGR);

@@ -187,6 +187,7 @@ void follow(const PathBundle<T>& bundle, int lines, PathSum sum) {
 using Signed = Full<std::int16_t>;
 constexpr std::int16_t kNoSum = 32767;
 constexpr int kSumLanes = kVectorBytes / 2;
+static_assert(kSumLanes <= kSumsRead);
 
 /// kSumLanes sums, kNoSum where the index is not below `count`.
 inline Signed loadSums(const std::uint16_t* sums, const Signed& index, int count) {

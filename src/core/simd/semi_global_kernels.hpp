@@ -56,13 +56,15 @@ struct Minima {
   const std::uint16_t* after;
 };
 
+constexpr int kSumsRead = 32;  ///< findWinners() reads so many sums at once, also beyond the last pixel
+
 /// Inner loops of semi-global matching, compiled per instruction set.
 struct SemiGlobalKernels {
   /// L(p, d) = C + min(L(d), L(d - 1) + P1, L(d + 1) + P1, min L + P2) - min L along 1 or kBundleLines paths.
   void (*followU8)(const PathBundle<std::uint8_t>& bundle, int lines, PathSum sum);
   void (*followU16)(const PathBundle<std::uint16_t>& bundle, int lines, PathSum sum);
   /// Winners of `width` pixels among sums[x * stride .. x * stride + count - 1]; the entries up to the next multiple of
-  /// 16 are read, too.
+  /// kSumsRead are read, too.
   void (*findWinners)(const std::uint16_t* sums, int stride, int count, int width, Winner* winners);
   /// The other view's best: where values[i] < best[i], best[i] = values[i] and best_index[i] = i.
   void (*keepSmaller)(const std::uint16_t* values, int count, std::uint16_t* best, std::uint16_t* best_index);
