@@ -25,6 +25,8 @@ struct Options {
   std::string preset = "fast";
   std::string color;
   std::string confidence;
+  std::string sigma;
+  std::string measures;
   std::string timings;
   std::string row_alignment;
   std::string seeds;
@@ -47,6 +49,9 @@ void addOptions(CLI::App& app, Options& options) {
                  "Draw the seeds on the left image, coloured by disparity, rejected ones as crosses");
   app.add_option("--color", options.color, "Write the disparity in colours, black = none");
   app.add_option("--confidence", options.confidence, "Write the confidence 0..1: .pfm, or an 8-bit picture");
+  app.add_option("--sigma", options.sigma, "Write the standard deviation of the disparity, px: .pfm, inf = none");
+  app.add_option("--measures", options.measures, "Write what confidence and sigma come from: .npy of float32")
+      ->group("");  // for benchmark/fit_confidence.py
   app.add_option("--row-alignment", options.row_alignment,
                  "Draw the row offset between the views and what it leaves of each match");
   app.add_option("--timings", options.timings, "Write times, memory and what the stages found as JSON");
@@ -104,11 +109,28 @@ void writeConfidence(const std::string& path, const cv::Mat& confidence) {
   isImageName(path) ? writeImage(path, confidenceToGrey(confidence)) : writeDisparity(path, confidence);
 }
 
+/// NumPy's format, version 1.0: an array [measure][row][column].
+void writeMeasures(const std::string& path, const std::vector<cv::Mat>& measures) {
+  constexpr std::size_t kAlignment = 64, kPreamble = 10;
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(measures.size()) + ", " +
+                       std::to_string(measures[0].rows) + ", " + std::to_string(measures[0].cols) + "), }";
+  while ((kPreamble + header.size() + 1) % kAlignment != 0) header += ' ';
+  header += '\n';
+  std::string bytes = std::string("\x93NUMPY\x01", 7) + '\0' + static_cast<char>(header.size() % 256) +
+                      static_cast<char>(header.size() / 256) + header;
+  for (const cv::Mat& measure : measures) {
+    bytes.append(reinterpret_cast<const char*>(measure.data), measure.total() * measure.elemSize());
+  }
+  writeFile(path, bytes);
+}
+
 void writeOutputs(const Options& options, const PipelineParams& params, const cv::Mat& left,
                   const PipelineResult& result) {
   writeDisparity(options.output, result.disparity);
   if (!options.color.empty()) writeImage(options.color, colorize(result.disparity, params.search));
   if (!options.confidence.empty()) writeConfidence(options.confidence, result.confidence);
+  if (!options.sigma.empty()) writeDisparity(options.sigma, result.sigma);
+  if (!options.measures.empty()) writeMeasures(options.measures, result.quality_measures);
   if (!options.row_alignment.empty()) {
     writeImage(options.row_alignment, drawRowAlignment(left, result.matches, result.row_alignment));
   }
@@ -149,12 +171,13 @@ void checkFiles(const Options& options) {
   require(isDisparityName(options.output), options.output, ".pfm or .png");
   require(isDisparityName(options.confidence) || isImageName(options.confidence), options.confidence,
           ".pfm or a picture, as .png");
+  require(isDisparityName(options.sigma), options.sigma, ".pfm");
   for (const std::string& picture : {options.color, options.row_alignment, options.draw_seeds}) {
     require(isImageName(picture), picture, ".png, .jpg, .tiff, .bmp, .webp or .ppm");
   }
-  checkOutputs(
-      {options.output, options.color, options.confidence, options.row_alignment, options.draw_seeds, options.timings},
-      {options.left, options.right, options.seeds, options.preset}, options.overwrite);
+  checkOutputs({options.output, options.color, options.confidence, options.sigma, options.measures,
+                options.row_alignment, options.draw_seeds, options.timings},
+               {options.left, options.right, options.seeds, options.preset}, options.overwrite);
 }
 
 /// A range with which no pixel of the image has a match is a mistake, not an empty scene.
@@ -199,6 +222,7 @@ int match(const Options& options) {
   const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds, left.size());
   warnOfSeedsOutside(seeds, left.size());
   Pipeline pipeline(params);
+  if (!options.measures.empty()) pipeline.setQuality(Pipeline::Quality::kWithMeasures);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) pipeline.setProgress(showProgress);
   const PipelineResult result = pipeline.run(left, right, seeds);

@@ -25,8 +25,10 @@ struct PipelineStats {
 /// All that one run found.
 struct PipelineResult : PipelineStats {
   cv::Mat disparity;   ///< CV_32FC1, px of the left image as given, NaN = none
-  cv::Mat confidence;  ///< CV_32FC1, 0..1
-  cv::Mat left;        ///< CV_8UC1 or CV_8UC3, the left image in 8 bits; shares the one given where that is so
+  cv::Mat confidence;  ///< CV_32FC1, 0..1: probability that the disparity is off by at most 1 px; 0 = filled or none
+  cv::Mat sigma;       ///< CV_32FC1, px: standard deviation of the disparity, NaN where the confidence is 0
+  std::vector<cv::Mat> quality_measures;  ///< what confidence and sigma come from, where setQuality() asks for them
+  cv::Mat left;  ///< CV_8UC1 or CV_8UC3, the left image in 8 bits; shares the one given where that is so
   FeatureMatches matches;
   Seeds seeds;
   Seeds rejected_seeds;
@@ -39,6 +41,8 @@ SparseDisparity allSeeds(const PipelineResult& result);
 /// The method: stages 1 to 8, one after another. Owns their buffers; one instance per thread.
 class Pipeline {
  public:
+  enum class Quality { kNone, kEstimated, kWithMeasures };
+
   /// Throws std::invalid_argument where validate() does.
   explicit Pipeline(const PipelineParams& params);
   ~Pipeline();
@@ -56,6 +60,8 @@ class Pipeline {
   const PipelineParams& params() const { return params_; }
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
+  /// Confidence and sigma are estimated unless nobody wants them: they are empty then.
+  void setQuality(Quality quality) { quality_ = quality; }
   /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values).
   void reset();
 
@@ -70,10 +76,12 @@ class Pipeline {
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void expandPlanes(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void refine(Frame& frame, PipelineResult& result) const;
+  void judge(const Frame& frame, const cv::Mat& roughness, PipelineResult& result) const;
   void restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given, PipelineResult& result) const;
 
   PipelineParams params_;
   OptimizerProgress progress_;
+  Quality quality_ = Quality::kEstimated;
   std::unique_ptr<State> state_;
 };
 

@@ -12,6 +12,7 @@
 
 #include "costs/image_planes.hpp"
 #include "costs/subpixel_volume.hpp"
+#include "fdp_stereo/confidence.hpp"
 #include "fdp_stereo/hidden_pixels.hpp"
 #include "fdp_stereo/image_preparation.hpp"
 #include "fdp_stereo/io.hpp"
@@ -99,14 +100,6 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
       std::to_string(search.count) + " disparities needs about " + std::to_string(static_cast<int>(mb)) +
       " MB, above pipeline.max_memory_mb = " + std::to_string(static_cast<int>(params.max_memory_mb)) +
       ": reduce search.num_disparities or pipeline.scale, or raise the limit");
-}
-
-/// 0..1, the larger the worse the best other answer is.
-cv::Mat confidenceOf(const cv::Mat& margin) {
-  constexpr double kTypicalMargin = 0.25;  // cost
-  cv::Mat confidence;
-  cv::exp(margin * (-1.0 / kTypicalMargin), confidence);
-  return 1.0 - confidence;
 }
 
 }  // namespace
@@ -275,11 +268,13 @@ void Pipeline::expandPlanes(Frame& frame, PipelineResult& result, const std::ato
 void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   cv::Mat& disparity = frame.optimized.disparity_left;
   const cv::Mat& left = frame.pair.left;
+  const cv::Mat roughness = quality_ == Quality::kNone ? cv::Mat() : disparityRoughness(disparity);
   dropHidden(disparity);
   if (params_.left_right_check.enabled && !frame.optimized.disparity_right.empty()) {
     checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
   }
   filterSpeckles(disparity, params_.speckle_filter);
+  judge(frame, roughness, result);
   const cv::Mat holes = noneMask(disparity);
   if (params_.hole_filling.enabled) fillHoles(disparity);
   filterWeightedMedian(disparity, left, holes, params_.weighted_median);
@@ -287,15 +282,33 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   // Where nothing is to be seen the surroundings may still explain it: a guess, as good as any other filling.
   if (!params_.hole_filling.enabled) disparity.setTo(kInvalidDisparity, frame.blind);
   result.disparity = disparity;
-  result.confidence = confidenceOf(frame.optimized.margin);
-  result.confidence.setTo(0.0F, holes | frame.blind);
+}
+
+/// What is filled in afterwards has no confidence.
+void Pipeline::judge(const Frame& frame, const cv::Mat& roughness, PipelineResult& result) const {
+  if (quality_ == Quality::kNone) return;
+  const OptimizerOutput& optimized = frame.optimized;
+  const QualityInput input{roughness,   optimized.margin, optimized.disparity_left, optimized.disparity_right,
+                           frame.guide, frame.search};
+  DisparityQuality quality = judgeDisparity(input, quality_ == Quality::kWithMeasures);
+  result.confidence = quality.confidence;
+  result.sigma = quality.sigma;
+  result.quality_measures = std::move(quality.measures);
+  result.confidence.setTo(0.0F, frame.blind);
+  result.sigma.setTo(kInvalidDisparity, frame.blind);
 }
 
 void Pipeline::restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given,
                            PipelineResult& result) const {
   result.disparity = scaling.grow(result.disparity, matched, given, params_.search);
-  cv::resize(result.confidence, result.confidence, given.size(), 0.0, 0.0, cv::INTER_LINEAR);
-  result.confidence.setTo(0.0F, noneMask(result.disparity));
+  if (!result.confidence.empty()) {
+    const cv::Mat none = noneMask(result.disparity);
+    const double growth = static_cast<double>(given.cols) / matched.cols;
+    cv::resize(result.confidence, result.confidence, given.size(), 0.0, 0.0, cv::INTER_NEAREST);
+    cv::resize(result.sigma * growth, result.sigma, given.size(), 0.0, 0.0, cv::INTER_NEAREST);
+    result.confidence.setTo(0.0F, none);
+    result.sigma.setTo(kInvalidDisparity, none);
+  }
   result.matches = scaling.grow(std::move(result.matches));
   result.seeds = scaling.grow(std::move(result.seeds));
   result.quasi_dense_seeds = scaling.grow(std::move(result.quasi_dense_seeds));

@@ -74,9 +74,13 @@ std::vector<StageChecksum> checksumsOf(const PipelineResult& result) {
   }
   Checksum rows;
   for (int i = 0; i < kRowOffsetTerms; ++i) rows.add(result.row_alignment.model.coefficients[i]);
-  return {{"feature_matching", matches.text()},           {"row_alignment", rows.text()},
-          {"sparse_disparity", checksumOf(result.seeds)}, {"quasi_dense", checksumOf(result.quasi_dense_seeds)},
-          {"disparity", checksumOf(result.disparity)},    {"confidence", checksumOf(result.confidence)}};
+  return {{"feature_matching", matches.text()},
+          {"row_alignment", rows.text()},
+          {"sparse_disparity", checksumOf(result.seeds)},
+          {"quasi_dense", checksumOf(result.quasi_dense_seeds)},
+          {"disparity", checksumOf(result.disparity)},
+          {"confidence", checksumOf(result.confidence)},
+          {"sigma", checksumOf(result.sigma)}};
 }
 
 /// The presets as shipped; those that take seconds on a part of the pair.
