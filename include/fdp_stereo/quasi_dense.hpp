@@ -13,11 +13,11 @@ namespace fdp_stereo {
 /// corners alone, so that their surfaces reach into the places that have none.
 struct QuasiDenseParams {
   bool enabled = true;
-  int row_step = 3;     ///< every row_step-th row is matched, >= 1
+  int row_step = 4;     ///< every row_step-th row is matched, >= 1
   int spacing_px = 6;   ///< from seed to seed along a row, >= 1; between rows rounded down to matched ones
   double gamma = 20.0;  ///< as DisparityPropagationParams::gamma, of the surface form
   double reach_px = 250.0;
-  double strength = 0.05;
+  double strength = 0.08;
   double spread_px = 2.0;
 };
 

@@ -13,7 +13,7 @@ namespace fdp_stereo {
 /// Semi-global matching (Hirschmueller, PAMI 2008) along four paths: both ways along rows and columns.
 struct SemiGlobalParams {
   double p1 = 0.6;            ///< cost units: disparity changes by 1
-  double p2 = 3.0;            ///< cost units: disparity changes by more
+  double p2 = 2.7;            ///< cost units: disparity changes by more
   double p2_gradient = 0.04;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
   SubpixelFit subpixel = SubpixelFit::kBlended;
   double uniqueness_ratio = 0.0;  ///< %, as stereo_image_proc
