@@ -33,6 +33,7 @@ struct MatchingCostParams {
   double lambda_ad = 10.0;                                  ///< eq. (6)
   double rho_weight = 0.7;  ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
   CostBorder border = CostBorder::kRepeatDisparity;
+  bool adapt = true;  ///< smooth what noise, compression or one view out of focus have spoilt
 };
 
 /// Largest cost that the parameters can give (2 for the paper's form).

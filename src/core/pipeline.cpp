@@ -18,6 +18,7 @@
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/scaling.hpp"
 #include "images/blind_pixels.hpp"
+#include "images/cost_views.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
@@ -124,6 +125,7 @@ struct Pipeline::State {
 /// What the stages of one run hand on.
 struct Pipeline::Frame {
   StereoPair pair;  ///< of the size that is matched; the right view aligned
+  CostViews cost;   ///< the same, as the matching cost sees it
   DisparityRange search;
   cv::Mat guide;  ///< left, CV_8UC1
   cv::Mat blind;  ///< CV_8UC1, 255 where the left view holds no information
@@ -164,7 +166,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const StereoPair given = prepare(left, right);
   result.left = given.left;
   const Scaling scaling(given.left.size(), params_.scale);
-  Frame frame{scaling.shrink(given), scaling.shrink(params_.search), {}, {}, {}};
+  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}};
   checkMemory(params_, frame.pair.left.size(), frame.search);
   clock.done("image_preparation");
 
@@ -176,7 +178,8 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   result.row_alignment = alignPair(result.matches, given.left.rows, frame.pair);
   clock.done("row_alignment");
 
-  state_->matching_cost.compute(frame.pair, frame.search, params_.matching_cost, costScale(params_), state_->volume);
+  frame.cost = costViews(frame.pair, params_.matching_cost);
+  state_->matching_cost.compute(frame.cost.pair, frame.search, frame.cost.params, costScale(params_), state_->volume);
   clock.done("matching_cost");
 
   buildSeeds(frame, scaling.shrink(external), result);
@@ -256,7 +259,8 @@ void Pipeline::expandPlanes(Frame& frame, PipelineResult& result, const std::ato
   const auto finer_costs = [&](ExpandedView side, int steps, CostVolume& volume) {
     const bool mirrored = side == ExpandedView::kRight;
     const StereoPair pair = mirrored ? mirrorPair(frame.pair) : frame.pair;
-    computeSubpixelVolume(pair, frame.search, params_.matching_cost, steps, volume);
+    const StereoPair& seen = frame.cost.pair;
+    computeSubpixelVolume(mirrored ? mirrorPair(seen) : seen, frame.search, frame.cost.params, steps, volume);
     spreadSeeds(result, pair.left, mirrored, {frame.search.min, steps}, volume);
   };
   const LocalExpansionInput input{state_->volume, frame.pair, result.seeds, initial, finer_costs, cancel, progress_};

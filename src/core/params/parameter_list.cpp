@@ -107,6 +107,10 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
   list.add("border", p.border, {"repeat_disparity", "repeat_pixel"},
            "Costs whose match is outside the right image: the pixel's nearest valid one along the disparities, or that "
            "of the nearest pixel of the row.");
+  list.add(
+      "adapt", p.adapt,
+      "Measure noise, compression and sharpness of each pair, and smooth as far as they ask for it; good images are "
+      "left as they are.");
 }
 
 void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagationParams& propagation) {
