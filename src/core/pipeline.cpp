@@ -283,8 +283,7 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   if (params_.hole_filling.enabled) fillHoles(disparity);
   filterWeightedMedian(disparity, left, holes, params_.weighted_median);
   smoothDisparity(disparity, left, params_.disparity_smoothing);
-  // Where nothing is to be seen the surroundings may still explain it: a guess, as good as any other filling.
-  if (!params_.hole_filling.enabled) disparity.setTo(kInvalidDisparity, frame.blind);
+  if (!params_.hole_filling.enabled) dropUnexplained(frame.blind, disparity);
   result.disparity = disparity;
 }
 

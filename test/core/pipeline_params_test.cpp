@@ -218,6 +218,19 @@ TEST(Yaml, TakesTheDumpOfANode) {
   }
 }
 
+TEST(Yaml, ReportsMisspeltNamesOfTheNode) {
+  for (const std::string name : {"seeds_points_trsut", "seeds.point_trust", "node.max_rate", "seeds_", "max_rat"}) {
+    PipelineParams params;
+    try {
+      loadYaml(params, "semi_global.p1: 0.7\n" + name + ": 1\n", "file");
+      ADD_FAILURE() << name;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("file:2: unknown parameter '" + name + "'"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(Yaml, APresetInItComesFirst) {
   PipelineParams params;
   params.search.count = 33;

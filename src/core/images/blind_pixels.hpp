@@ -11,4 +11,8 @@ namespace fdp_stereo {
 /// the noise of a sensor is more than that. CV_8UC1.
 cv::Mat blindPixels(const cv::Mat& grey);
 
+/// Keeps the disparity (CV_32FC1) of blind pixels only where the seen ones beside them in their row explain it: it must
+/// lie between the nearest known disparities to the left and to the right. A guess: its confidence is 0 all the same.
+void dropUnexplained(const cv::Mat& blind, cv::Mat& disparity);
+
 }  // namespace fdp_stereo

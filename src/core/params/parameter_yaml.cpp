@@ -53,23 +53,20 @@ class YamlReader {
   std::vector<NamedText> values_;
 };
 
-/// What a dump of a node holds beside the pipeline's parameters.
+/// What a dump of a node, or a file for one, holds beside the pipeline's parameters.
 bool belongsToTheNode(const std::string& name) {
-  static const std::set<std::string> names = {"preset",
-                                              "params",
-                                              "max_rate",
-                                              "max_age",
-                                              "nice",
-                                              "min_depth",
-                                              "max_depth",
-                                              "queue_size",
-                                              "approximate_sync",
-                                              "watch_period",
-                                              "image_transport",
-                                              "diagnostic_period",
-                                              "approximate_sync_tolerance"};
-  const auto in = [&](const char* stage) { return name.rfind(stage, 0) == 0; };
-  return names.count(name) != 0 || in("node.") || in("seeds.") || in("seeds_");
+  static const std::set<std::string> names = {
+      "preset", "params",
+      // read at the start
+      "approximate_sync", "approximate_sync_tolerance", "diagnostic_period", "image_transport", "queue_size",
+      "seeds_fixed_frame", "watch_period",
+      // live
+      "max_age", "max_depth", "max_rate", "min_depth", "nice", "seeds_depth_trust", "seeds_disparity_trust",
+      "seeds_max_age", "seeds_points_trust", "seeds_spacing", "seeds_wait",
+      // the same by their keys
+      "node.max_age_s", "node.max_depth_m", "node.max_rate_hz", "node.min_depth_m", "node.nice", "seeds.depth_trust",
+      "seeds.disparity_trust", "seeds.max_age_s", "seeds.points_trust", "seeds.spacing_px", "seeds.wait_s"};
+  return names.count(name) != 0;
 }
 
 std::string readText(const std::string& path) {
