@@ -27,7 +27,7 @@ struct QualityInput {
 /// before any check: where it was wrong they scatter.
 cv::Mat disparityRoughness(const cv::Mat& disparity);
 
-/// Stage 8d: confidence and sigma of every disparity.
+/// Stage 8e: confidence and sigma of every disparity.
 DisparityQuality judgeDisparity(const QualityInput& input, bool keep_measures = false);
 
 }  // namespace fdp_stereo

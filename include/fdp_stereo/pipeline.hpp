@@ -76,7 +76,7 @@ class Pipeline {
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void expandPlanes(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);
   void refine(Frame& frame, PipelineResult& result) const;
-  void judge(const Frame& frame, const cv::Mat& roughness, PipelineResult& result) const;
+  void judge(const Frame& frame, const cv::Mat& roughness, const cv::Mat& closed, PipelineResult& result) const;
   void restoreSize(const Scaling& scaling, const cv::Mat& matched, const cv::Mat& given, PipelineResult& result) const;
 
   PipelineParams params_;

@@ -10,6 +10,7 @@
 #include "fdp_stereo/disparity_propagation.hpp"
 #include "fdp_stereo/disparity_smoothing.hpp"
 #include "fdp_stereo/feature_matching.hpp"
+#include "fdp_stereo/hole_closing.hpp"
 #include "fdp_stereo/hole_filling.hpp"
 #include "fdp_stereo/left_right_check.hpp"
 #include "fdp_stereo/local_expansion.hpp"
@@ -43,6 +44,7 @@ struct PipelineParams {
   LocalExpansionParams local_expansion;
   LeftRightCheckParams left_right_check;
   SpeckleFilterParams speckle_filter;
+  HoleClosingParams hole_closing;
   HoleFillingParams hole_filling;
   WeightedMedianParams weighted_median;
   DisparitySmoothingParams disparity_smoothing;

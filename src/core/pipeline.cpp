@@ -103,6 +103,8 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
       ": reduce search.num_disparities or pipeline.scale, or raise the limit");
 }
 
+constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
+
 }  // namespace
 
 SparseDisparity allSeeds(const PipelineResult& result) {
@@ -278,9 +280,10 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
     checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
   }
   filterSpeckles(disparity, params_.speckle_filter);
-  judge(frame, roughness, result);
+  const cv::Mat closed = params_.hole_closing.enabled ? closeHoles(disparity) : cv::Mat();
+  judge(frame, roughness, closed, result);
   const cv::Mat holes = noneMask(disparity);
-  if (params_.hole_filling.enabled) fillHoles(disparity);
+  if (params_.hole_filling.enabled) fillHoles(disparity, params_.hole_filling.max_size);
   filterWeightedMedian(disparity, left, holes, params_.weighted_median);
   smoothDisparity(disparity, left, params_.disparity_smoothing);
   if (!params_.hole_filling.enabled) dropUnexplained(frame.blind, disparity);
@@ -288,7 +291,8 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
 }
 
 /// What is filled in afterwards has no confidence.
-void Pipeline::judge(const Frame& frame, const cv::Mat& roughness, PipelineResult& result) const {
+void Pipeline::judge(const Frame& frame, const cv::Mat& roughness, const cv::Mat& closed,
+                     PipelineResult& result) const {
   if (quality_ == Quality::kNone) return;
   const OptimizerOutput& optimized = frame.optimized;
   const QualityInput input{roughness,   optimized.margin, optimized.disparity_left, optimized.disparity_right,
@@ -297,6 +301,7 @@ void Pipeline::judge(const Frame& frame, const cv::Mat& roughness, PipelineResul
   result.confidence = quality.confidence;
   result.sigma = quality.sigma;
   result.quality_measures = std::move(quality.measures);
+  if (!closed.empty()) result.confidence.setTo(kClosedConfidence, closed & (result.confidence > kClosedConfidence));
   result.confidence.setTo(0.0F, frame.blind);
   result.sigma.setTo(kInvalidDisparity, frame.blind);
 }

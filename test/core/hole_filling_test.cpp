@@ -56,6 +56,15 @@ TEST(HoleFilling, LeavesWhatIsKnownAndFillsAllElse) {
   EXPECT_EQ(reference::differingPixels(known, before), 0);
 }
 
+TEST(HoleFilling, LargerHolesStay) {
+  cv::Mat disparity = (cv::Mat_<float>(2, 7) << 5.0F, kNone, 5.0F, kNone, kNone, 4.0F, 4.0F,  //
+                       5.0F, 5.0F, 5.0F, kNone, 4.0F, 4.0F, 4.0F);
+  fillHoles(disparity, 2);
+  const cv::Mat expected = (cv::Mat_<float>(2, 7) << 5.0F, 5.0F, 5.0F, kNone, kNone, 4.0F, 4.0F,  //
+                            5.0F, 5.0F, 5.0F, kNone, 4.0F, 4.0F, 4.0F);
+  EXPECT_EQ(reference::differingPixels(disparity, expected), 0);
+}
+
 TEST(HoleFilling, AMapWithoutAnyDisparityStays) {
   cv::Mat none(4, 5, CV_32FC1, cv::Scalar(kNone));
   fillHoles(none);

@@ -105,6 +105,7 @@ std::vector<PipelineParams> setups() {
   setup.disparity_propagation.form = PropagationForm::kWindow;
   setup.feature_matching.detector = FeatureDetector::kSift;
   setup.optimizer = OptimizerType::kWinnerTakesAll;
+  setup.hole_filling.enabled = true;
   all.push_back(setup);
   setup = loadPreset("accurate");
   setup.search = {0, 24};

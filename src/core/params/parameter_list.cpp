@@ -205,9 +205,13 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.add("max_difference_px", p.speckle_filter.max_difference_px, 0.0, 16.0, "px",
            "Neighbouring disparities closer than this belong to one region.", "speckle_range")
       .step = TuningStep::kFilters;
+  list.stage("hole_closing");
+  list.add("enabled", p.hole_closing.enabled, "Close tiny holes inside one surface from that surface.").step =
+      TuningStep::kFilters;
   list.stage("hole_filling");
   list.add("enabled", p.hole_filling.enabled, "Fill pixels without disparity from the background beside them.").step =
       TuningStep::kFilters;
+  list.add("max_size", p.hole_filling.max_size, 0, 100000, "px", "Holes of more pixels stay; 0 fills all of them.");
   list.stage("weighted_median");
   list.add("radius", p.weighted_median.radius, 0, 7, "px", "Radius of the window of the weighted median; 0 is off.")
       .step = TuningStep::kFilters;

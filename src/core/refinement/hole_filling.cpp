@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 namespace fdp_stereo {
 namespace {
@@ -37,9 +40,24 @@ int nearestFilledRow(const std::vector<bool>& filled, int y) {
   return -1;
 }
 
+/// Pixels in holes of more than max_size px: CV_8UC1, 255.
+cv::Mat largeHoles(const cv::Mat& disparity, int max_size) {
+  cv::Mat labels, stats, centres;
+  cv::connectedComponentsWithStats(~(disparity == disparity), labels, stats, centres, 4, CV_32S);
+  cv::Mat large = cv::Mat::zeros(disparity.size(), CV_8UC1);
+  for (int y = 0; y < large.rows; ++y) {
+    for (int x = 0; x < large.cols; ++x) {
+      const int hole = labels.at<int>(y, x);
+      if (hole > 0 && stats.at<int>(hole, cv::CC_STAT_AREA) > max_size) large.at<std::uint8_t>(y, x) = 255;
+    }
+  }
+  return large;
+}
+
 }  // namespace
 
-void fillHoles(cv::Mat& disparity) {
+void fillHoles(cv::Mat& disparity, int max_size) {
+  const cv::Mat large = max_size > 0 ? largeHoles(disparity, max_size) : cv::Mat();
   std::vector<bool> filled(disparity.rows);
   for (int y = 0; y < disparity.rows; ++y) filled[y] = fillRow(disparity.ptr<float>(y), disparity.cols);
   for (int y = 0; y < disparity.rows; ++y) {
@@ -47,6 +65,7 @@ void fillHoles(cv::Mat& disparity) {
     const int donor = nearestFilledRow(filled, y);
     if (donor >= 0) disparity.row(donor).copyTo(disparity.row(y));
   }
+  if (!large.empty()) disparity.setTo(kInvalidDisparity, large);
 }
 
 }  // namespace fdp_stereo

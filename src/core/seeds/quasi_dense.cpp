@@ -83,6 +83,7 @@ Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const Quas
   matcher.match(volume, guide, penalties, rough, params.row_step);
   LeftRightCheckParams check;
   check.max_difference_px = kMaxDifferencePx;
+  check.vote = false;
   checkLeftRight(rough.disparity_left, rough.disparity_right, check);
   SpeckleFilterParams speckles;
   speckles.max_size = kSpecklePx / params.row_step;
