@@ -85,8 +85,8 @@ void fillSurface(const ConfidenceSumRow& row, int width) {
     disparity[x] = bounded(larger(d, 0.0F), kHalfDisparityPx);
     const float share = 1.0F / larger(static_cast<float>(r.known[x]), 1.0F);
     const float mean = static_cast<float>(r.steps[x]) * share;
-    const float variance = larger(static_cast<float>(r.squares[x]) * share - mean * mean, 0.0F) * px * px;
-    spread[x] = bounded(variance, kHalfPx * kHalfPx);
+    const float variance = larger(static_cast<float>(r.squares[x]) * share - mean * mean, 0.0F);
+    spread[x] = bounded(__builtin_sqrtf(variance) * px, kHalfPx);
     const float e = d - r.lowest - mean * px;
     offset[x] = e / ((e < 0.0F ? -e : e) + kHalfPx);
   }
