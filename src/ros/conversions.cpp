@@ -218,6 +218,20 @@ cv::Mat fromDisparityMessage(const stereo_msgs::DisparityImage& message, const S
   return disparity;
 }
 
+cv::Mat depthError(const cv::Mat& disparity, const cv::Mat& sigma, const StereoGeometry& geometry) {
+  cv::Mat error(disparity.size(), CV_32FC1);
+  const double scale = 1.0 / (geometry.focal_px * geometry.baseline_m);
+  for (int y = 0; y < error.rows; ++y) {
+    const auto *d = disparity.ptr<float>(y), *s = sigma.ptr<float>(y);
+    auto* row = error.ptr<float>(y);
+    for (int x = 0; x < error.cols; ++x) {
+      const double z = geometry.depth(d[x]);
+      row[x] = std::isfinite(z) ? static_cast<float>(z * z * s[x] * scale) : kInvalidDisparity;
+    }
+  }
+  return error;
+}
+
 sensor_msgs::ImagePtr toDepthMessage(const cv::Mat& disparity, const std_msgs::Header& header,
                                      const StereoGeometry& geometry, DepthLimits limits) {
   sensor_msgs::ImagePtr message = toImageMessage(disparity, header);

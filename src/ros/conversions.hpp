@@ -42,6 +42,9 @@ struct DepthLimits {
 sensor_msgs::ImagePtr toDepthMessage(const cv::Mat& disparity, const std_msgs::Header& header,
                                      const StereoGeometry& geometry, DepthLimits limits);
 
+/// Standard deviation of the depth, CV_32FC1 in metres: z^2 sigma / (f T); NaN where there is no depth or no sigma.
+cv::Mat depthError(const cv::Mat& disparity, const cv::Mat& sigma, const StereoGeometry& geometry);
+
 /// Grey or BGR of 8 or 16 bit, or a CV_32FC1 map, copied into a message. Throws std::invalid_argument for other types.
 sensor_msgs::ImagePtr toImageMessage(const cv::Mat& image, const std_msgs::Header& header);
 

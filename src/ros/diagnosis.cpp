@@ -245,6 +245,7 @@ void checkVisible(const CheckedPair& pair, const Observation& seen, Findings& fi
       findings.push_back({Verdict::kOdd, warning, "see docs/tuning.md: the range of disparities"});
     }
     findings.push_back({Verdict::kGood, visibleDistances(seen.range, width, pair.geometry), ""});
+    findings.push_back({Verdict::kGood, depthErrors(kTypicalSigmaPx, pair.geometry), ""});
   } catch (const std::invalid_argument& error) {
     findings.push_back({Verdict::kWrong, error.what(), rangeCommand(seen.node, 0.0, 63.0)});
   }

@@ -57,6 +57,21 @@ sensor_msgs::CameraInfoPtr depthInfo(const StereoFrame& frame) {
   return info;
 }
 
+bool limitsDepth(const NodeParams& node) { return node.max_depth_error_m > 0.0 || node.min_confidence > 0.0; }
+
+bool needsQuality(const NodeParams& node, const WantedOutputs& wanted) {
+  return wanted.confidence || wanted.depth_error || (wanted.depth && limitsDepth(node));
+}
+
+/// The disparity without the pixels that are not sure enough, or whose depth is not; filled ones have no estimate.
+cv::Mat sureDisparity(const PipelineResult& result, const cv::Mat& depth_error, const NodeParams& node) {
+  if (!limitsDepth(node)) return result.disparity;
+  cv::Mat sure = result.disparity.clone();
+  if (node.min_confidence > 0.0) sure.setTo(kInvalidDisparity, result.confidence < node.min_confidence);
+  if (node.max_depth_error_m > 0.0) sure.setTo(kInvalidDisparity, ~(depth_error <= node.max_depth_error_m));
+  return sure;
+}
+
 }  // namespace
 
 FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
@@ -76,7 +91,10 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.node.seeds_wait_s));
   const Seeds external = externalSeeds(
       {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
-  PipelineResult result = pipelineFor(settings).run(left, right, external, cancel);
+  Pipeline& pipeline = pipelineFor(settings);
+  const bool quality = needsQuality(settings.node, wanted);
+  pipeline.setQuality(quality ? Pipeline::Quality::kEstimated : Pipeline::Quality::kNone);
+  PipelineResult result = pipeline.run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
   // What both cameras cannot have seen stays unknown though filled: consumers rely on a map that is not fully dense.
   if (settings.pipeline.hole_filling.enabled) dropHidden(result.disparity);
@@ -85,12 +103,14 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   if (wanted.disparity) {
     output.disparity = toDisparityMessage(result.disparity, header, geometry, range, disparityStep(settings.pipeline));
   }
+  const cv::Mat depth_error = quality ? depthError(result.disparity, result.sigma, geometry) : cv::Mat();
   if (wanted.depth) {
-    output.depth =
-        toDepthMessage(result.disparity, header, geometry, {settings.node.min_depth_m, settings.node.max_depth_m});
+    output.depth = toDepthMessage(sureDisparity(result, depth_error, settings.node), header, geometry,
+                                  {settings.node.min_depth_m, settings.node.max_depth_m});
     output.depth_info = depthInfo(frame);
   }
   if (wanted.confidence) output.confidence = toImageMessage(result.confidence, header);
+  if (wanted.depth_error) output.depth_error = toImageMessage(depth_error, header);
   if (wanted.seeds) output.seeds = toImageMessage(drawSeeds(result.left, allSeeds(result), range), header);
   if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
   fillReport(result, output.report);

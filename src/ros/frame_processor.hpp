@@ -27,8 +27,9 @@ struct WantedOutputs {
   bool confidence = false;
   bool seeds = false;
   bool disparity_color = false;
+  bool depth_error = false;
 
-  bool any() const { return disparity || depth || confidence || seeds || disparity_color; }
+  bool any() const { return disparity || depth || confidence || seeds || disparity_color || depth_error; }
 };
 
 /// What is told about one pair.
@@ -49,6 +50,7 @@ struct FrameOutput {
   sensor_msgs::ImagePtr depth;
   sensor_msgs::CameraInfoPtr depth_info;
   sensor_msgs::ImagePtr confidence;
+  sensor_msgs::ImagePtr depth_error;      ///< m, 1 sigma, NaN where there is no estimate
   sensor_msgs::ImagePtr seeds;            ///< the left image with the seeds, bgr8
   sensor_msgs::ImagePtr disparity_color;  ///< colours over the searched range, black = none, bgr8
   FrameReport report;

@@ -17,6 +17,7 @@ void OutputTopics::advertise(ros::NodeHandle& node, const std::function<void()>&
   depth_ = transport.advertiseCamera("depth/image_rect", 1, on_image_change, on_image_change, on_change, on_change);
   depth_by_old_name_ = advertiseImage("depth");
   confidence_ = advertiseImage("confidence");
+  depth_error_ = advertiseImage("depth_error");
   seeds_ = advertiseImage("seeds/image");
   disparity_color_ = advertiseImage("disparity_color");
 }
@@ -24,7 +25,8 @@ void OutputTopics::advertise(ros::NodeHandle& node, const std::function<void()>&
 void OutputTopics::shutdown() {
   disparity_.shutdown();
   depth_.shutdown();
-  for (auto* images : {&depth_by_old_name_, &confidence_, &seeds_, &disparity_color_}) images->shutdown();
+  for (auto* images : {&depth_by_old_name_, &confidence_, &depth_error_, &seeds_, &disparity_color_})
+    images->shutdown();
 }
 
 WantedOutputs OutputTopics::wanted() const {
@@ -32,6 +34,7 @@ WantedOutputs OutputTopics::wanted() const {
   outputs.disparity = disparity_.getNumSubscribers() > 0;
   outputs.depth = depth_.getNumSubscribers() + depth_by_old_name_.getNumSubscribers() > 0;
   outputs.confidence = confidence_.getNumSubscribers() > 0;
+  outputs.depth_error = depth_error_.getNumSubscribers() > 0;
   outputs.seeds = seeds_.getNumSubscribers() > 0;
   outputs.disparity_color = disparity_color_.getNumSubscribers() > 0;
   return outputs;
@@ -44,6 +47,7 @@ void OutputTopics::publish(const FrameOutput& output) const {
     depth_by_old_name_.publish(output.depth);
   }
   if (output.confidence) confidence_.publish(output.confidence);
+  if (output.depth_error) depth_error_.publish(output.depth_error);
   if (output.seeds) seeds_.publish(output.seeds);
   if (output.disparity_color) disparity_color_.publish(output.disparity_color);
 }

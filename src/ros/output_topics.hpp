@@ -24,7 +24,7 @@ class OutputTopics {
  private:
   ros::Publisher disparity_;
   image_transport::CameraPublisher depth_;
-  image_transport::Publisher depth_by_old_name_, confidence_, seeds_, disparity_color_;
+  image_transport::Publisher depth_by_old_name_, confidence_, depth_error_, seeds_, disparity_color_;
 };
 
 }  // namespace fdp_stereo

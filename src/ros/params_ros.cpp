@@ -293,6 +293,12 @@ void addNode(std::vector<ParamRef>& refs, NodeParams& n) {
                   "min_depth", TuningStep::kNode});
   refs.push_back({"node.max_depth_m", &n.max_depth_m, 0.0, 200.0, "m",
                   "Farther points are left out of depth; 0 keeps all.", "max_depth", TuningStep::kNode});
+  refs.push_back({"node.max_depth_error_m", &n.max_depth_error_m, 0.0, 10.0, "m",
+                  "Points with a larger standard deviation (depth_error) are left out of depth; 0 keeps all.",
+                  "max_depth_error", TuningStep::kNode});
+  refs.push_back({"node.min_confidence", &n.min_confidence, 0.0, 1.0, "",
+                  "Points with a smaller confidence are left out of depth; 0 keeps all.", "min_confidence",
+                  TuningStep::kNode});
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ struct NodeParams {
   int nice = 0;              ///< of the working threads, 0..19
   double min_depth_m = 0.0;
   double max_depth_m = 0.0;            ///< 0 = none
+  double max_depth_error_m = 0.0;      ///< 1 sigma; 0 = none
+  double min_confidence = 0.0;         ///< 0..1
   double seeds_points_trust = 0.95;    ///< 0..1, share of the seeds of this source that are right; 0 = it is not used
   double seeds_depth_trust = 0.9;      ///< likewise
   double seeds_disparity_trust = 0.9;  ///< likewise

@@ -37,4 +37,27 @@ std::string visibleDistances(DisparityRange range, int width, const StereoGeomet
   return told.str();
 }
 
+std::string depthErrors(double sigma_px, const StereoGeometry& geometry) {
+  std::ostringstream told;
+  told.precision(2);
+  told << "depth error (1 sigma, " << sigma_px << " px of disparity):";
+  const char* separator = " ";
+  for (const double z : {1.0, 2.0, 5.0, 10.0}) {
+    told << separator << z * z * sigma_px / (geometry.focal_px * geometry.baseline_m) << " m at " << z << " m";
+    separator = ", ";
+  }
+  return told.str();
+}
+
+int disparityRangeFor(double nearest_m, int min_disparity, const StereoGeometry& geometry) {
+  constexpr int kMultiple = 16, kLargest = 4096;
+  const double largest = geometry.focal_px * geometry.baseline_m / nearest_m + geometry.cx_offset_px;
+  const double count = std::ceil(largest) - min_disparity + 1.0;
+  if (!(nearest_m > 0.0) || !(count <= kLargest)) {
+    fail("nearest distance ", nearest_m, " m: needs ", count, " disparities, at most ", kLargest, " are searched; ask ",
+         "for a larger distance, or match smaller images (pipeline_scale)");
+  }
+  return (std::max(static_cast<int>(count), 1) + kMultiple - 1) / kMultiple * kMultiple;
+}
+
 }  // namespace fdp_stereo

@@ -67,6 +67,16 @@ TEST(Confidence, IsHighOnAFloorAtEveryFraction) {
   EXPECT_NEAR(whole, half, 0.05);
 }
 
+TEST(Confidence, SigmaBoundsTheErrorsOfAFloor) {
+  const Floor floor = floorPair();
+  const PipelineResult result = Pipeline(params(32)).run(floor.left, floor.right);
+  const cv::Mat error = cv::abs(result.disparity - floor.truth), sure = result.confidence > 0.8F;
+  const int all = cv::countNonZero(sure);
+  EXPECT_GT(all, kRows * kCols / 2);
+  EXPECT_GE(cv::countNonZero((error <= result.sigma) & sure), all * 60 / 100);
+  EXPECT_GE(cv::countNonZero((error <= 3.0 * result.sigma) & sure), all * 95 / 100);
+}
+
 TEST(Confidence, SigmaIsKnownWhereThereIsConfidence) {
   const reference::RenderedPair pair = reference::renderPair(kRows, kCols, 6, 15, 5);
   for (const double scale : {1.0, 0.5}) {

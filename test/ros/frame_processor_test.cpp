@@ -19,7 +19,7 @@ using test::kFocal;
 using test::kPlaneDisparity;
 using test::Messages;
 
-const WantedOutputs kAll{true, true, true, true, true};
+const WantedOutputs kAll{true, true, true, true, true, true};
 
 NodeSettings settings() {
   NodeSettings s;
@@ -91,11 +91,61 @@ TEST(FrameProcessor, SeedsAreShownInDarkImagesWithHotPixels) {
   EXPECT_NEAR(brightness(messages), brightness(goodMessages()), 10.0);
 }
 
+TEST(FrameProcessor, DepthErrorIsThatOfTheFormula) {
+  const Messages messages = goodMessages();
+  const FrameOutput output = run(messages);
+  const cv::Mat depth = pixels(*output.depth), error = pixels(*output.depth_error);
+  Pipeline pipeline(settings().pipeline);
+  const StereoFrame frame = messages.frame();
+  const cv::Mat sigma = pipeline.run(decodeImage(*frame.left, "left"), decodeImage(*frame.right, "right")).sigma;
+  int compared = 0;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const float z = depth.at<float>(y, x), s = sigma.at<float>(y, x);
+      if (std::isnan(z) || std::isnan(s)) continue;
+      ASSERT_NEAR(error.at<float>(y, x), z * z * s / (kFocal * kBaseline), 1e-4F * z);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 10000);
+}
+
+TEST(FrameProcessor, UnsurePointsAreLeftOutOfDepthAlone) {
+  const FrameOutput all = run(goodMessages());
+  NodeSettings strict = settings();
+  strict.node.max_depth_error_m = cv::mean(pixels(*all.depth_error), pixels(*all.depth_error) > 0.0F)[0];
+  strict.node.min_confidence = 0.9;
+  const FrameOutput sure = run(goodMessages(), strict);
+  const cv::Mat error = pixels(*all.depth_error), confidence = pixels(*all.confidence);
+  int kept = 0;
+  for (int y = 0; y < error.rows; ++y) {
+    for (int x = 0; x < error.cols; ++x) {
+      const bool expected =
+          error.at<float>(y, x) <= strict.node.max_depth_error_m && confidence.at<float>(y, x) >= 0.9F;
+      ASSERT_EQ(!std::isnan(pixels(*sure.depth).at<float>(y, x)), expected) << x << ", " << y;
+      kept += expected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(kept, 1000);
+  EXPECT_EQ(cv::norm(pixels(sure.disparity->image), pixels(all.disparity->image), cv::NORM_INF), 0.0);
+}
+
+TEST(FrameProcessor, WhatMaxDepthErrorKeepsIsThatExact) {
+  NodeSettings strict = settings();
+  strict.node.max_depth_error_m = 0.05;
+  const cv::Mat depth = pixels(*run(goodMessages(), strict).depth);
+  const double truth = kFocal * kBaseline / kPlaneDisparity;
+  const int kept = cv::countNonZero(depth == depth);
+  const int exact = cv::countNonZero(cv::abs(depth - truth) <= 3.0 * strict.node.max_depth_error_m);
+  EXPECT_GT(kept, 0);
+  EXPECT_GE(exact, kept * 95 / 100);
+}
+
 TEST(FrameProcessor, WhatNobodyWantsIsNotMade) {
   FrameProcessor processor({});
   const FrameOutput output = processor.process(goodMessages().frame(), settings(), {});
   EXPECT_FALSE(output.disparity || output.depth || output.depth_info || output.confidence || output.seeds ||
-               output.disparity_color);
+               output.disparity_color || output.depth_error);
   EXPECT_GT(output.report.valid_share, 0.85);
 }
 

@@ -16,18 +16,8 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kNear = 2, kWide = 5;         // px, radii of the windows
-constexpr int kBandRows = 32;               // whose sums stay in the cache
-constexpr float kRoughnessSteps = 63.0F;    // per px
-constexpr float kMarginSteps = 8192.0F;     // per cost unit
-constexpr float kDisparitySteps = 16.0F;    // per px
-constexpr float kLargestDistancePx = 2.0F;  // of the views
-
-constexpr int side(int radius) { return 2 * radius + 1; }
-constexpr float area(int radius) { return static_cast<float>(side(radius) * side(radius)); }
-
-/// 0..1, half at `half`: what is large does not count without bound.
-float bounded(float value, float half) { return value / (value + half); }
+constexpr int kNear = 2, kWide = 5;  // px, radii of the windows
+constexpr int kBandRows = 48;        // whose maps and sums stay in the cache
 
 /// Contrast from pixel to pixel, grey levels: the noise, where there is little texture (Immerkaer 1996, with a median).
 float contrastOf(const cv::Mat& guide) {
@@ -49,164 +39,107 @@ float contrastOf(const cv::Mat& guide) {
   return static_cast<float>(median) * kMedianToSigma;
 }
 
-/// Whole numbers, so that the sums over windows are exact in any order.
-struct Maps {
-  cv::Mat margin;     // CV_16UC1
-  cv::Mat texture;    // CV_8UC1, steps across two pixels
-  cv::Mat known;      // CV_8UC1, 0 or 1
-  cv::Mat disparity;  // CV_16UC1 above the smallest of the range, 0 where none
-  cv::Mat square;     // CV_32FC1
-
-  explicit Maps(const QualityInput& input) {
-    const cv::Size size = input.disparity.size();
-    margin.create(size, CV_16UC1);
-    texture.create(size, CV_8UC1);
-    known.create(size, CV_8UC1);
-    disparity.create(size, CV_16UC1);
-    square.create(size, CV_32FC1);
-    parallelFor(size.height, [&](int y) { fillRow(input, y); });
-  }
-
- private:
-  void fillRow(const QualityInput& input, int y) {
-    constexpr float kLargest = 65535.0F;
-    const int width = margin.cols;
-    const auto *from_margin = input.margin.ptr<float>(y), *from_disparity = input.disparity.ptr<float>(y);
-    const auto* grey = input.guide.ptr<std::uint8_t>(y);
-    auto *to_margin = margin.ptr<std::uint16_t>(y), *to_disparity = disparity.ptr<std::uint16_t>(y);
-    auto *to_texture = texture.ptr<std::uint8_t>(y), *to_known = known.ptr<std::uint8_t>(y);
-    auto* to_square = square.ptr<float>(y);
-    const auto lowest = static_cast<float>(input.search.min);
-    for (int x = 0; x < width; ++x) {
-      const float d = from_disparity[x];
-      const bool is_known = d == d;
-      const float steps = is_known ? (d - lowest) * kDisparitySteps + 0.5F : 0.0F;
-      const auto whole = static_cast<int>(std::min(std::max(steps, 0.0F), kLargest));
-      to_known[x] = is_known ? 1 : 0;
-      to_disparity[x] = static_cast<std::uint16_t>(whole);
-      to_square[x] = static_cast<float>(whole) * static_cast<float>(whole);
-      to_margin[x] = static_cast<std::uint16_t>(static_cast<int>(std::min(from_margin[x] * kMarginSteps, kLargest)));
-    }
-    to_texture[0] = to_texture[width - 1] = 0;
-    for (int x = 1; x + 1 < width; ++x) {
-      to_texture[x] = static_cast<std::uint8_t>(std::abs(grey[x + 1] - grey[x - 1]));
-    }
-  }
-};
-
-/// Sums over windows around the pixels of a band of rows.
-struct Sums {
-  cv::Mat roughness_near, roughness_wide, margin, texture, known, disparity, square;
-
-  void compute(const cv::Mat& roughness, const Maps& maps, const cv::Range& rows) {
-    const auto sum = [&](const cv::Mat& map, int depth, int radius, cv::Mat& sums) {
-      cv::boxFilter(map.rowRange(rows), sums, depth, {side(radius), side(radius)}, {-1, -1}, false,
-                    cv::BORDER_REPLICATE);
-    };
-    sum(roughness, CV_32S, kNear, roughness_near);
-    sum(roughness, CV_32S, kWide, roughness_wide);
-    sum(maps.margin, CV_32S, kNear, margin);
-    sum(maps.texture, CV_32S, kNear, texture);
-    sum(maps.known, CV_32S, kWide, known);
-    sum(maps.disparity, CV_32S, kWide, disparity);
-    sum(maps.square, CV_64F, kWide, square);
-  }
-};
-
-/// Measures of one row; measure i of pixel x is at [i * stride + x]. The model was fitted to them in this form.
-class MeasureRow {
- public:
-  explicit MeasureRow(int width)
-      : stride_((width + kConfidenceBlock - 1) / kConfidenceBlock * kConfidenceBlock),
-        values_(static_cast<std::size_t>(stride_) * kConfidenceMeasures) {}
-
-  int stride() const { return stride_; }
-  const float* data() const { return values_.data(); }
-  const float* of(int measure) const { return values_.data() + static_cast<std::ptrdiff_t>(measure) * stride_; }
-
-  void fill(const QualityInput& input, const Sums& sums, float contrast, int y, int band_y) {
-    fillCosts(input, sums, contrast, y, band_y);
-    fillPlaces(input, y);
-    fillSurface(input, sums, y, band_y);
-  }
-
- private:
-  float* at(int measure) { return values_.data() + static_cast<std::ptrdiff_t>(measure) * stride_; }
-
-  void fillCosts(const QualityInput& input, const Sums& sums, float contrast, int y, int band_y) {
-    constexpr float kHalfMargin = 0.05F, kHalfRoughnessPx = 0.1F, kHalfTexture = 8.0F, kHalfContrast = 1.0F;
-    const auto* margin = input.margin.ptr<float>(y);
-    const auto *rough_near = sums.roughness_near.ptr<int>(band_y), *rough_wide = sums.roughness_wide.ptr<int>(band_y);
-    const auto *margins = sums.margin.ptr<int>(band_y), *texture = sums.texture.ptr<int>(band_y);
-    float *to_margin = at(0), *to_rough_near = at(2), *to_rough_wide = at(3), *to_margins = at(4), *to_texture = at(5),
-          *to_contrast = at(6);
-    const float bounded_contrast = bounded(contrast, kHalfContrast);
-    for (int x = 0; x < input.margin.cols; ++x) {
-      to_margin[x] = bounded(margin[x], kHalfMargin);
-      to_rough_near[x] = bounded(static_cast<float>(rough_near[x]), kHalfRoughnessPx * kRoughnessSteps * area(kNear));
-      to_rough_wide[x] = bounded(static_cast<float>(rough_wide[x]), kHalfRoughnessPx * kRoughnessSteps * area(kWide));
-      to_margins[x] = bounded(static_cast<float>(margins[x]), kHalfMargin * kMarginSteps * area(kNear));
-      to_texture[x] = bounded(static_cast<float>(texture[x]), kHalfTexture * area(kNear));
-      to_contrast[x] = bounded_contrast;
-    }
-  }
-
-  void fillPlaces(const QualityInput& input, int y) {
-    constexpr float kHalfDisparityPx = 16.0F, kFarPx = 100.0F;
-    const auto* disparity = input.disparity.ptr<float>(y);
-    const auto* right = input.disparity_right.empty() ? nullptr : input.disparity_right.ptr<float>(y);
-    float *to_distance = at(1), *to_border = at(7), *to_disparity = at(8);
-    for (int x = 0; x < input.disparity.cols; ++x) {
-      const float d = disparity[x] == disparity[x] ? disparity[x] : 0.0F;
-      const float match =
-          std::min(std::max(static_cast<float>(x) - d, 0.0F), static_cast<float>(input.disparity.cols - 1));
-      const float distance = right == nullptr ? 0.0F : std::abs(d - right[static_cast<int>(match + 0.5F)]);
-      to_distance[x] = (distance < kLargestDistancePx ? distance : kLargestDistancePx) / kLargestDistancePx;
-      to_border[x] = std::min(match, kFarPx) / kFarPx;
-      to_disparity[x] = bounded(std::max(d, 0.0F), kHalfDisparityPx);
-    }
-  }
-
-  void fillSurface(const QualityInput& input, const Sums& sums, int y, int band_y) {
-    constexpr float kHalfPx = 0.5F;
-    const auto* disparity = input.disparity.ptr<float>(y);
-    const auto *known = sums.known.ptr<int>(band_y), *sum = sums.disparity.ptr<int>(band_y);
-    const auto* squares = sums.square.ptr<double>(band_y);
-    float *to_spread = at(9), *to_offset = at(10);
-    const auto lowest = static_cast<float>(input.search.min);
-    for (int x = 0; x < input.disparity.cols; ++x) {
-      const float d = disparity[x] == disparity[x] ? disparity[x] - lowest : 0.0F;
-      const double count = std::max(known[x], 1), mean = sum[x] / count;
-      const auto variance = static_cast<float>(std::max(squares[x] / count - mean * mean, 0.0));
-      const float offset = d - static_cast<float>(mean) * (1.0F / kDisparitySteps);
-      to_spread[x] = bounded(std::sqrt(variance), kHalfPx * kDisparitySteps);
-      to_offset[x] = offset / (std::abs(offset) + kHalfPx);
-    }
-  }
-
-  int stride_;
-  std::vector<float> values_;
-};
-
-/// A step between neighbours: none to none is none, to a disparity the largest.
-float stepBetween(float a, float b) {
-  constexpr float kLargestStepPx = 2.0F;
-  const float step = std::abs(a - b);
-  if (step < kLargestStepPx) return step;
-  return a != a && b != b ? 0.0F : kLargestStepPx;
+float contrastMeasure(const cv::Mat& guide) {
+  const float contrast = contrastOf(guide);
+  return contrast / (contrast + 1.0F);
 }
+
+/// As fine as 12 bits allow.
+float stepsPerPx(DisparityRange range) {
+  float steps = 16.0F;
+  while (steps > 1.0F && steps * static_cast<float>(range.count) > kConfidenceLargestSteps) steps *= 0.5F;
+  return steps;
+}
+
+/// Confidence and sigma of bands of rows. One per thread.
+class BandJudge {
+ public:
+  BandJudge(const QualityInput& input, float contrast)
+      : input_(input),
+        kernels_(FDP_STEREO_SELECT(confidenceKernels)),
+        contrast_(contrast),
+        steps_(stepsPerPx(input.search)),
+        stride_((input.disparity.cols + kConfidenceBlock - 1) / kConfidenceBlock * kConfidenceBlock),
+        measures_(static_cast<std::size_t>(stride_) * kConfidenceMeasures) {}
+
+  void judge(const cv::Range& rows, DisparityQuality& quality) {
+    fillMaps(rows);
+    sumMaps(rows);
+    for (int y = rows.start; y < rows.end; ++y) {
+      fillMeasures(y, y - rows.start);
+      writeRow(y, quality);
+    }
+  }
+
+ private:
+  /// Of the rows and of those that the windows reach beside them, the outermost ones of the image repeated.
+  void fillMaps(const cv::Range& rows) {
+    const cv::Size size(input_.disparity.cols, rows.size() + 2 * kWide);
+    margin_.create(size, CV_16UC1);
+    texture_.create(size, CV_8UC1);
+    known_.create(size, CV_8UC1);
+    disparity_.create(size, CV_16UC1);
+    square_.create(size, CV_32SC1);
+    for (int i = 0; i < size.height; ++i) {
+      const int y = std::min(std::max(rows.start + i - kWide, 0), input_.disparity.rows - 1);
+      kernels_.fillMaps(
+          {input_.margin.ptr<float>(y), input_.disparity.ptr<float>(y), input_.guide.ptr<std::uint8_t>(y),
+           static_cast<float>(input_.search.min), steps_, margin_.ptr<std::uint16_t>(i), texture_.ptr<std::uint8_t>(i),
+           known_.ptr<std::uint8_t>(i), disparity_.ptr<std::uint16_t>(i), square_.ptr<std::int32_t>(i)},
+          size.width);
+    }
+  }
+
+  void sumMaps(const cv::Range& rows) {
+    const cv::Range own(kWide, kWide + rows.size());
+    const auto sum = [](const cv::Mat& map, int radius, cv::Mat& sums) {
+      const int side = 2 * radius + 1;
+      cv::boxFilter(map, sums, CV_32S, {side, side}, {-1, -1}, false, cv::BORDER_REPLICATE);
+    };
+    sum(input_.roughness.rowRange(rows), kNear, roughness_near_);
+    sum(input_.roughness.rowRange(rows), kWide, roughness_wide_);
+    sum(margin_.rowRange(own), kNear, margins_);
+    sum(texture_.rowRange(own), kNear, textures_);
+    sum(known_.rowRange(own), kWide, knowns_);
+    sum(disparity_.rowRange(own), kWide, disparities_);
+    sum(square_.rowRange(own), kWide, squares_);
+  }
+
+  void fillMeasures(int y, int i) {
+    kernels_.fillMeasures({input_.margin.ptr<float>(y), input_.disparity.ptr<float>(y),
+                           input_.disparity_right.empty() ? nullptr : input_.disparity_right.ptr<float>(y),
+                           roughness_near_.ptr<int>(i), roughness_wide_.ptr<int>(i), margins_.ptr<int>(i),
+                           textures_.ptr<int>(i), knowns_.ptr<int>(i), disparities_.ptr<int>(i), squares_.ptr<int>(i),
+                           static_cast<float>(input_.search.min), steps_, contrast_, measures_.data(), stride_},
+                          input_.disparity.cols);
+  }
+
+  void writeRow(int y, DisparityQuality& quality) const {
+    const int width = input_.disparity.cols;
+    kernels_.apply(kConfidenceModel, measures_.data(), stride_, input_.disparity.ptr<float>(y), width,
+                   quality.confidence.ptr<float>(y), quality.sigma.ptr<float>(y));
+    for (std::size_t i = 0; i < quality.measures.size(); ++i) {
+      std::copy_n(measures_.data() + i * stride_, width, quality.measures[i].ptr<float>(y));
+    }
+  }
+
+  const QualityInput& input_;
+  const ConfidenceKernels& kernels_;
+  float contrast_, steps_;
+  int stride_;
+  cv::Mat margin_, texture_, known_, disparity_, square_;
+  cv::Mat roughness_near_, roughness_wide_, margins_, textures_, knowns_, disparities_, squares_;
+  std::vector<float> measures_;
+};
 
 }  // namespace
 
 cv::Mat disparityRoughness(const cv::Mat& disparity) {
+  const ConfidenceKernels& kernels = FDP_STEREO_SELECT(confidenceKernels);
   cv::Mat result(disparity.size(), CV_8UC1);
   parallelFor(disparity.rows, [&](int y) {
-    const auto *row = disparity.ptr<float>(y), *above = disparity.ptr<float>(std::max(y - 1, 0));
-    auto* to = result.ptr<std::uint8_t>(y);
-    for (int x = 0; x < disparity.cols; ++x) {
-      const float steps = stepBetween(row[x], row[std::max(x - 1, 0)]) + stepBetween(row[x], above[x]);
-      to[x] = static_cast<std::uint8_t>(static_cast<int>(steps * kRoughnessSteps));
-    }
+    kernels.roughness(disparity.ptr<float>(y), disparity.ptr<float>(std::max(y - 1, 0)), disparity.cols,
+                      result.ptr<std::uint8_t>(y));
   });
   return result;
 }
@@ -217,40 +150,12 @@ DisparityQuality judgeDisparity(const QualityInput& input, bool keep_measures) {
   if (keep_measures) {
     for (int i = 0; i < kConfidenceMeasures; ++i) quality.measures.emplace_back(size, CV_32FC1);
   }
-  const ConfidenceKernels& kernels = FDP_STEREO_SELECT(confidenceKernels);
-  const Maps maps(input);
-  const float contrast = contrastOf(input.guide);
-  struct Scratch {
-    Sums sums;
-    MeasureRow measures;
-    std::vector<float> confidence, sigma;
+  const float contrast = contrastMeasure(input.guide);
+  const auto makeJudge = [&] { return BandJudge(input, contrast); };
+  const auto judgeBand = [&](int band, BandJudge& judge) {
+    judge.judge({band * kBandRows, std::min((band + 1) * kBandRows, size.height)}, quality);
   };
-  const auto makeScratch = [&] {
-    MeasureRow row(size.width);
-    const auto width = static_cast<std::size_t>(row.stride());
-    return Scratch{{}, std::move(row), std::vector<float>(width), std::vector<float>(width)};
-  };
-  const auto judgeBand = [&](int band, Scratch& scratch) {
-    const cv::Range rows(band * kBandRows, std::min((band + 1) * kBandRows, size.height));
-    scratch.sums.compute(input.roughness, maps, rows);
-    for (int y = rows.start; y < rows.end; ++y) {
-      MeasureRow& measures = scratch.measures;
-      measures.fill(input, scratch.sums, contrast, y, y - rows.start);
-      kernels.apply(kConfidenceModel, measures.data(), measures.stride(), measures.stride(), scratch.confidence.data(),
-                    scratch.sigma.data());
-      const auto* disparity = input.disparity.ptr<float>(y);
-      auto *confidence = quality.confidence.ptr<float>(y), *sigma = quality.sigma.ptr<float>(y);
-      for (int x = 0; x < size.width; ++x) {
-        const bool known = disparity[x] == disparity[x];
-        confidence[x] = known ? scratch.confidence[x] : 0.0F;
-        sigma[x] = known ? scratch.sigma[x] : kInvalidDisparity;
-      }
-      for (std::size_t i = 0; i < quality.measures.size(); ++i) {
-        std::copy_n(measures.of(static_cast<int>(i)), size.width, quality.measures[i].ptr<float>(y));
-      }
-    }
-  };
-  parallelFor((size.height + kBandRows - 1) / kBandRows, makeScratch, judgeBand, 1);
+  parallelFor((size.height + kBandRows - 1) / kBandRows, makeJudge, judgeBand, 1);
   return quality;
 }
 
