@@ -105,6 +105,15 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
 
 constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
 
+/// Filters the speckles of what is seen, and keeps of the rest what that explains.
+void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::Mat& disparity) {
+  const cv::Mat guessed = disparity.clone();
+  disparity.setTo(kInvalidDisparity, blind);
+  filterSpeckles(disparity, speckles);
+  guessed.copyTo(disparity, blind);
+  dropUnexplained(blind, disparity);
+}
+
 }  // namespace
 
 SparseDisparity allSeeds(const PipelineResult& result) {
@@ -279,14 +288,17 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   if (params_.left_right_check.enabled && !frame.optimized.disparity_right.empty()) {
     checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
   }
-  filterSpeckles(disparity, params_.speckle_filter);
+  if (params_.hole_filling.enabled) {
+    filterSpeckles(disparity, params_.speckle_filter);
+  } else {
+    dropUnseen(frame.blind, params_.speckle_filter, disparity);
+  }
   const cv::Mat closed = params_.hole_closing.enabled ? closeHoles(disparity) : cv::Mat();
   judge(frame, roughness, closed, result);
   const cv::Mat holes = noneMask(disparity);
   if (params_.hole_filling.enabled) fillHoles(disparity, params_.hole_filling.max_size);
   filterWeightedMedian(disparity, left, holes, params_.weighted_median);
   smoothDisparity(disparity, left, params_.disparity_smoothing);
-  if (!params_.hole_filling.enabled) dropUnexplained(frame.blind, disparity);
   result.disparity = disparity;
 }
 
