@@ -8,6 +8,7 @@
 #   debian-11  library and nodelet (no command-line tools: that release has no CLI11), and the golden checksums
 #   arm64      the library without ROS, cross-built; its kernels consist of vector instructions; the core's tests under
 #              qemu, the golden checksums among them
+#   bare       no package of ROS: the library is built and installed there, and the example built against it and run
 # The root is made in a temporary folder and removed; with FDP_STEREO_ROOTS=FOLDER it stays there and is used again.
 set -euo pipefail
 # shellcheck source=scripts/environment.sh
@@ -20,8 +21,8 @@ name="${1:-}"
 case "$name" in
   debian-13) suite=trixie ;;
   debian-11) suite=bullseye ;;
-  arm64) suite=bookworm ;;
-  *) fail "unknown platform '$name', there are debian-13, debian-11, arm64" 2 ;;
+  arm64 | bare) suite=bookworm ;;
+  *) fail "unknown platform '$name', there are debian-13, debian-11, arm64, bare" 2 ;;
 esac
 [ "$(id -u)" -eq 0 ] || fail "run as root: debootstrap and chroot need it"
 command -v debootstrap >/dev/null || { apt-get update -q && apt-get install -y -q --no-install-recommends debootstrap; }
@@ -79,7 +80,7 @@ build() { # TARGET OF THE TESTS, CMAKE OPTION...
 
 run_tests() { # CTEST OPTION...
   say "running ctest $*"
-  inside sh -c 'cd /build && ROS_HOME=/build/ros_home exec ctest --output-on-failure "$@"' ctest "$@" </dev/null
+  inside sh -c 'cd /build && ROS_HOSTNAME=localhost ROS_HOME=/build/ros_home exec ctest --output-on-failure "$@"' ctest "$@" </dev/null
 }
 
 test_debian_13() {
@@ -107,6 +108,18 @@ test_arm64() {
   run_tests -L core
 }
 
+test_bare() {
+  install_packages g++ cmake ninja-build libopencv-dev libeigen3-dev libyaml-cpp-dev
+  # shellcheck disable=SC2016 # dpkg's own format
+  if inside dpkg-query -W -f='${Package}\n' | grep -E '^(lib)?(ros|catkin)' >&2; then fail "the root has packages of ROS"; fi
+  build all -DFDP_STEREO_ROS=OFF -DBUILD_TESTING=OFF
+  inside cmake --install /build --prefix /prefix >>"$root.log"
+  inside cmake -S /fdp_stereo/examples -B /example -G Ninja -DCMAKE_PREFIX_PATH=/prefix >>"$root.log"
+  inside cmake --build /example
+  inside /example/match_two_images /fdp_stereo/sample/motorcycle/left.png /fdp_stereo/sample/motorcycle/right.png /disparity.pfm
+  say "the example wrote $(inside wc -c /disparity.pfm)"
+}
+
 make_root
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
 copy_sources
@@ -114,5 +127,6 @@ case "$name" in
   debian-13) test_debian_13 ;;
   debian-11) test_debian_11 ;;
   arm64) test_arm64 ;;
+  bare) test_bare ;;
 esac
 say "$name passed"

@@ -77,6 +77,10 @@ box is ticked:
 | `basic_5_node` | rate and limits of the depth |
 | `expert_01_pipeline`, ... | the rest, stage by stage |
 
+![Five open groups of parameters with sliders, and the closed groups of experts below](images/tuning_window.svg)
+
+(Drawn by `scripts/draw_tuning_window.py` from `cfg/Disparity.cfg`, which rqt_reconfigure shows.)
+
 Choose a `preset` there to begin again; it turns to `custom` with the first value that is changed. When the values are good, keep them:
 `rosrun dynamic_reconfigure dynparam dump /stereo/disparity tuned.yaml`. The file is a preset for the tools and `params:=tuned.yaml`
 of `stereo.launch`.

@@ -48,16 +48,21 @@ class ThreadScope {
  public:
   explicit ThreadScope(int threads) : before_(omp_get_max_threads()), opencv_before_(cv::getNumThreads()) {
     omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs());
-    cv::setNumThreads(std::min(omp_get_max_threads(), cv::getNumberOfCPUs()));  // it warns of more
+    useOpenCvThreads(std::min(omp_get_max_threads(), cv::getNumberOfCPUs()));  // it warns of more
   }
   ~ThreadScope() {
     omp_set_num_threads(before_);
-    cv::setNumThreads(opencv_before_);
+    useOpenCvThreads(opencv_before_);
   }
   ThreadScope(const ThreadScope&) = delete;
   ThreadScope& operator=(const ThreadScope&) = delete;
 
  private:
+  /// Only where it changes something: OpenCV ends its threads for that, while another thread may be using them.
+  static void useOpenCvThreads(int threads) {
+    if (cv::getNumThreads() != threads) cv::setNumThreads(threads);
+  }
+
   int before_, opencv_before_;
 };
 

@@ -22,7 +22,7 @@ rosparam set /disparity/watch_period 0.2
 "$1/lib/fdp_stereo/disparity_node" </dev/null >"$work/node.log" 2>&1 &
 node=$!
 for _ in $(seq 200); do
-  if rosparam get /disparity/min_disparity >/dev/null 2>&1; then break; fi
+  if rostopic list 2>/dev/null | grep -qx /disparity_color; then break; fi # the last that it advertises
   sleep 0.1
 done
 kill "$master"
