@@ -17,7 +17,7 @@ struct QuasiDenseParams {
   int spacing_px = 6;   ///< from seed to seed along a row, >= 1; between rows rounded down to matched ones
   double gamma = 20.0;  ///< as DisparityPropagationParams::gamma, of the surface form
   double reach_px = 250.0;
-  double strength = 0.08;
+  double strength = 0.06;
   double spread_px = 2.0;
 };
 

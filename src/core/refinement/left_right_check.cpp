@@ -15,7 +15,7 @@ namespace {
 
 /// Of the pixels around that are in the image. A weaker majority lets occluded pixels pass, a stronger one costs
 /// answers on weak texture.
-constexpr double kMinShare = 0.22;
+constexpr double kMinShare = 0.42;
 
 /// The left disparity where one of the two right pixels beside its match agrees, NaN elsewhere.
 void keepAgreeing(const float* left, const float* right, int width, float max_difference, float* agreeing) {
