@@ -83,7 +83,7 @@ bool outvoted(const cv::Mat& left, const cv::Mat& agreeing, int x, int y) {
       votes += alike(left.at<float>(y, x), between) && alike(between, agreeing.at<float>(v, u)) ? 1 : 0;
     }
   }
-  return votes < 0.22 * pixels;
+  return votes < 0.42 * pixels;
 }
 
 TEST(LeftRightCheck, EqualsTheReferenceWithVotes) {

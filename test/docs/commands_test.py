@@ -49,10 +49,10 @@ class CommandsTest(unittest.TestCase):
         with open(os.path.join(ROOT, "docs", "nodes.md")) as file:
             page = file.read()
         names = set()
-        for source in ("disparity_nodelet.cpp", "seed_sources.cpp", "params_ros.cpp"):
+        for source in ("disparity_nodelet.cpp", "output_topics.cpp", "seed_sources.cpp", "params_ros.cpp"):
             with open(os.path.join(ROOT, "src", "ros", source)) as file:
                 text = file.read()
-            names.update(re.findall(r'(?:advertise(?:Camera)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
+            names.update(re.findall(r'(?:advertise(?:Camera|Image)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
             names.update(re.findall(r'(?:param(?:<[^>]+>)?|period)\("(\w+)"', text))
             if source == "params_ros.cpp":
                 names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)",\s*TuningStep::', text, flags=re.S))

@@ -103,18 +103,18 @@ class ProcessBagTest(unittest.TestCase):
         with rosbag.Bag(self.output) as bag:
             return [message for _, message, _ in bag.read_messages(topics=[topic])]
 
-    def expected_disparity(self):
+    def expected_disparity(self, depth=np.uint8):
         """What match says, in published units: NaN where there is no answer or the match is outside the right image."""
-        cv2.imwrite(self.path("left.png"), self.left)
-        cv2.imwrite(self.path("right.png"), self.right)
+        cv2.imwrite(self.path("left.png"), self.left.astype(depth))
+        cv2.imwrite(self.path("right.png"), self.right.astype(depth))
         code, _, err = run("match", self.path("left.png"), self.path("right.png"), "-o", self.path("d.pfm"),
                            "--num-disparities", 16, "--overwrite")
         self.assertEqual(code, 0, err)
         disparity = read_pfm(self.path("d.pfm"))
         return np.where(np.isfinite(disparity), disparity - np.float32(CX_LEFT - CX_RIGHT), np.nan)
 
-    def check_disparities(self, frames):
-        expected = self.expected_disparity()
+    def check_disparities(self, frames, depth=np.uint8):
+        expected = self.expected_disparity(depth)
         found = self.messages("/stereo/disparity")
         self.assertEqual(len(found), frames)
         for message in found:
@@ -224,7 +224,7 @@ class ProcessBagTest(unittest.TestCase):
             with self.subTest(form=form):
                 self.write_messages(lambda i, side, image: (form, encode(convert(image))))
                 self.process("--overwrite")
-                self.check_disparities(2)
+                self.check_disparities(2, convert(self.left).dtype)
         self.write_messages(lambda i, side, image: ("bgr8; jpeg compressed bgr8", encode(image, ".jpg")))
         self.process("--overwrite")
         self.assertEqual(len(self.messages("/stereo/disparity")), 2)

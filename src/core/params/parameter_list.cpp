@@ -193,8 +193,7 @@ void addLocalExpansion(ParamList& list, LocalExpansionParams& p) {
 
 void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.stage("left_right_check");
-  list.add("enabled", p.left_right_check.enabled, "Drop disparities on which the two views disagree.").step =
-      TuningStep::kFilters;
+  list.add("enabled", p.left_right_check.enabled, "Drop disparities on which the two views disagree.");
   list.add("max_difference_px", p.left_right_check.max_difference_px, 0.0, 16.0, "px",
            "Largest difference between the views' disparities that is accepted.", "disp12MaxDiff")
       .step = TuningStep::kFilters;
@@ -206,8 +205,7 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
            "Neighbouring disparities closer than this belong to one region.", "speckle_range")
       .step = TuningStep::kFilters;
   list.stage("hole_closing");
-  list.add("enabled", p.hole_closing.enabled, "Close tiny holes inside one surface from that surface.").step =
-      TuningStep::kFilters;
+  list.add("enabled", p.hole_closing.enabled, "Close tiny holes inside one surface from that surface.");
   list.stage("hole_filling");
   list.add("enabled", p.hole_filling.enabled, "Fill pixels without disparity from the background beside them.").step =
       TuningStep::kFilters;
@@ -218,8 +216,7 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.add("gamma", p.weighted_median.gamma, 0.0, 200.0, "",
            "Colour difference at which a neighbour's weight falls to 1/e; 0 is the plain median.");
   list.stage("disparity_smoothing");
-  list.add("radius", p.disparity_smoothing.radius, 0, 20, "px", "Reach of the edge-preserving mean; 0 is off.").step =
-      TuningStep::kFilters;
+  list.add("radius", p.disparity_smoothing.radius, 0, 20, "px", "Reach of the edge-preserving mean; 0 is off.");
   list.add("gamma", p.disparity_smoothing.gamma, 1.0, 200.0, "",
            "Colour difference at which a neighbour's weight is halved.");
 }
