@@ -40,8 +40,9 @@ class SampleScale {
   void toSamples(const float* disparity, int count, std::int16_t* samples) const {
     for (int x = 0; x < count; ++x) {
       const float d = disparity[x] == disparity[x] ? disparity[x] : offset_;
-      const auto steps = static_cast<std::int32_t>((d - offset_) * steps_ + 0.5F) + kSmallest;
-      samples[x] = disparity[x] == disparity[x] ? static_cast<std::int16_t>(steps) : kNoSample;
+      const float steps = (d - offset_) * steps_ + 0.5F;
+      const auto sample = static_cast<std::int16_t>(static_cast<std::int32_t>(steps) + kSmallest);
+      samples[x] = disparity[x] == disparity[x] ? sample : kNoSample;
     }
   }
   float toDisparity(std::int16_t sample) const { return offset_ + static_cast<float>(sample - kSmallest) / steps_; }

@@ -13,7 +13,6 @@
 // Fixed-point arithmetic of the kernels, in vectors of the compiler as wide as the registers.
 namespace fdp_stereo {
 namespace FDP_STEREO_ISA {
-namespace {
 
 #if defined(__AVX2__)
 constexpr int kShortLanes = 16;
@@ -45,6 +44,5 @@ inline U16s decayOf(const U16s& v, const Decay& decay) {
   return e;
 }
 
-}  // namespace
 }  // namespace FDP_STEREO_ISA
 }  // namespace fdp_stereo
