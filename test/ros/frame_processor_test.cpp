@@ -133,7 +133,8 @@ TEST(FrameProcessor, UnsurePointsAreLeftOutOfDepthAlone) {
 TEST(FrameProcessor, WhatMaxDepthErrorKeepsIsThatExact) {
   NodeSettings strict = settings();
   strict.node.max_depth_error_m = 0.05;
-  const cv::Mat depth = pixels(*run(goodMessages(), strict).depth);
+  const FrameOutput output = run(goodMessages(), strict);
+  const cv::Mat depth = pixels(*output.depth);
   const double truth = kFocal * kBaseline / kPlaneDisparity;
   const int kept = cv::countNonZero(depth == depth);
   const int exact = cv::countNonZero(cv::abs(depth - truth) <= 3.0 * strict.node.max_depth_error_m);
