@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <new>
 #include <opencv2/core.hpp>
@@ -57,6 +58,16 @@ void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
       "Print every parameter that --set takes and exit");
 }
 
+CLI::Validator numberIn(double smallest, double largest) {
+  CLI::Range range(smallest, largest);
+  const auto check = [range](const std::string& text) {
+    const std::string problem = range(text);
+    return problem.empty() && std::isnan(std::stod(text)) ? "Value " + text + " is no number" : problem;
+  };
+  CLI::Validator validator(range);
+  return validator.operation([check](std::string& text) { return check(text); });
+}
+
 void addOverwriteOption(CLI::App& app, bool& overwrite) {
   app.add_flag("--overwrite", overwrite, "Replace outputs that exist; an input is never replaced");
 }
@@ -64,13 +75,13 @@ void addOverwriteOption(CLI::App& app, bool& overwrite) {
 void addSeedSimulationOptions(CLI::App& app, SeedSimulation& simulation) {
   app.add_option("--seed-share", simulation.share, "Share of the pixels whose truth becomes a seed")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(numberIn(0.0, 1.0));
   app.add_option("--seed-noise", simulation.noise_px, "Standard deviation of the seeds' disparity, px")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--seed-outliers", simulation.outliers, "Share of the seeds whose disparity is drawn from the range")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(numberIn(0.0, 1.0));
 }
 
 PipelineParams resolveParams(const std::string& preset, const PipelineOptions& options) {

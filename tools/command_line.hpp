@@ -32,6 +32,9 @@ struct PipelineOptions {
 /// Adds --min-disparity, --num-disparities, --threads, --set, --fill, and --list-parameters, which prints and exits.
 void addPipelineOptions(CLI::App& app, PipelineOptions& options);
 
+/// CLI::Range of numbers that "nan" is not in.
+CLI::Validator numberIn(double smallest, double largest);
+
 /// Adds --overwrite.
 void addOverwriteOption(CLI::App& app, bool& overwrite);
 

@@ -266,7 +266,7 @@ void addOptions(CLI::App& app, Options& options) {
          "text file, one stamp a line: ns since the epoch, or seconds with a decimal point; or EuRoC's data.csv; "
          "replaces --rate")
       ->check(CLI::ExistingFile);
-  app.add_option("--rate", options.rate_hz, "pairs per second, Hz")->check(CLI::Range(0.01, 1000.0));
+  app.add_option("--rate", options.rate_hz, "pairs per second, Hz")->check(numberIn(0.01, 1000.0));
   app.add_option("--repeat", options.repeat, "how often the images are written")->check(CLI::Range(1, 1000000));
   app.add_option("--namespace", options.stereo_namespace, "namespace of the camera (default /stereo)");
   app.add_option("--frame-id", options.frame_id, "frame of both images (default stereo_optical)");

@@ -381,7 +381,7 @@ void addInputOptions(CLI::App& app, Options& options) {
   app.add_flag("--rectified", options.rectified, "The images are rectified, although their name does not say so");
   app.add_flag("--approximate-sync", options.sync.approximate, "Pair images whose stamps differ, like the node");
   app.add_option("--approximate-sync-tolerance", options.sync.tolerance_s, "Largest difference in s, 0 = any")
-      ->check(CLI::Range(0.0, 60.0));
+      ->check(numberIn(0.0, 60.0));
 }
 
 void addOptions(CLI::App& app, Options& options) {

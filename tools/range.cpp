@@ -21,10 +21,10 @@ struct Options {
 void addOptions(CLI::App& app, Options& options) {
   app.add_option("--focal", options.geometry.focal_px, "Focal length, px: P[0] of camera_info")
       ->required()
-      ->check(CLI::Range(1.0, 1e5));
+      ->check(numberIn(1.0, 1e5));
   app.add_option("--baseline", options.geometry.baseline_m, "Distance of the cameras, m: -P[3] / P[0] of the right one")
       ->required()
-      ->check(CLI::Range(1e-4, 1e3));
+      ->check(numberIn(1e-4, 1e3));
   app.add_option("--cx-offset", options.geometry.cx_offset_px, "P[2] of the left camera less that of the right one, px")
       ->capture_default_str();
   app.add_option("--width", options.width, "Width of the image, px: nothing has a larger disparity")
@@ -34,10 +34,10 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::Range(1, 4096));
   app.add_option("--nearest", options.nearest_m, "Print the disparity_range that sees from this distance on, m")
-      ->check(CLI::Range(1e-3, 1e4));
+      ->check(numberIn(1e-3, 1e4));
   app.add_option("--sigma", options.sigma_px, "Standard deviation of the disparity, px")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 100.0));
+      ->check(numberIn(1e-3, 100.0));
 }
 
 int printRange(const Options& options) {
