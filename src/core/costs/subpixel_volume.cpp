@@ -17,12 +17,6 @@ cv::Mat shifted(const cv::Mat& image, double shift) {
   return result;
 }
 
-cv::Mat mirrored(const cv::Mat& image) {
-  cv::Mat result;
-  cv::flip(image, result, 1);
-  return result;
-}
-
 // Copies the costs of whole disparities to every steps-th entry, from `first` on.
 void interleave(const CostVolume& whole, int steps, int first, CostVolume& volume) {
   const int count = whole.range().count;
@@ -86,6 +80,12 @@ void mirrorVolume(const CostVolume& left, CostVolume& mirrored) {
   } else {
     mirrorCosts<std::uint16_t>(left, mirrored);
   }
+}
+
+cv::Mat mirrored(const cv::Mat& image) {
+  cv::Mat result;
+  cv::flip(image, result, 1);
+  return result;
 }
 
 StereoPair mirrorPair(const StereoPair& pair) {

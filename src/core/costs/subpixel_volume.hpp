@@ -18,6 +18,8 @@ void computeSubpixelVolume(const StereoPair& pair, DisparityRange range, const M
 /// right pixel x at disparity d is that of left pixel x + d; where this leaves the image the nearest valid d counts.
 void mirrorVolume(const CostVolume& left, CostVolume& mirrored);
 
+/// The image mirrored left to right.
+cv::Mat mirrored(const cv::Mat& image);
 /// The pair seen from behind: left and right mirrored and exchanged. Its left view is the right view of `pair`, and
 /// disparities keep their sign.
 StereoPair mirrorPair(const StereoPair& pair);

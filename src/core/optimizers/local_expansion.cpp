@@ -29,12 +29,6 @@ void check(const LocalExpansionInput& input, const LocalExpansionParams& params)
   }
 }
 
-cv::Mat mirrored(const cv::Mat& map) {
-  cv::Mat result;
-  cv::flip(map, result, 1);
-  return result;
-}
-
 /// One run: the views one after the other, so that only one volume beside the given one is alive at a time.
 class Run {
  public:
@@ -69,10 +63,10 @@ class Run {
  private:
   // In the coordinates of the view: the right one is mirrored.
   std::vector<lx::SurfacePoint> seedsOf(ExpandedView side) const {
+    const bool left = side == ExpandedView::kLeft;
     std::vector<lx::SurfacePoint> points;
-    const float last = static_cast<float>(input_.pair.left.cols - 1);
-    for (const Seed& seed : input_.seeds) {
-      points.push_back({side == ExpandedView::kLeft ? seed.x : last - (seed.x - seed.d), seed.y, seed.d});
+    for (const Seed& seed : left ? input_.seeds : mirrorSeeds(input_.seeds, input_.pair.left.cols)) {
+      points.push_back({seed.x, seed.y, seed.d});
     }
     return points;
   }

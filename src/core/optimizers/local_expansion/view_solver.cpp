@@ -97,26 +97,33 @@ void ViewSolver::initialize(Labels& labels) {
   });
 }
 
-// Gives every pixel of a cell the candidate that is cheapest there.
-void ViewSolver::choose(const Candidates& planes, const Cell& cell, Worker& worker, Labels& labels) const {
+// Hands on every plane with its costs over the area; they are computed for some planes at a time.
+template <typename Use>
+void ViewSolver::evaluate(const Candidates& planes, const cv::Rect& area, PlaneCostBuffers& buffers,
+                          const Use& use) const {
   for (std::size_t first = 0; first < planes.size(); first += kPlaneBatch) {
     const int count = static_cast<int>(std::min<std::size_t>(kPlaneBatch, planes.size() - first));
     PlaneBatch batch;
     for (int k = 0; k < kPlaneBatch; ++k) batch[k] = planes[first + std::min(k, count - 1)];
-    cost_.evaluate(batch, cell.core, worker.costs);
-    int i = 0;
+    cost_.evaluate(batch, area, buffers);
+    for (int k = 0; k < count; ++k) use(batch[k], buffers.costs(k));
+  }
+}
+
+// Gives every pixel of a cell the candidate that is cheapest there.
+void ViewSolver::choose(const Candidates& planes, const Cell& cell, Worker& worker, Labels& labels) const {
+  bool first = true;
+  evaluate(planes, cell.core, worker.costs, [&](const Plane& plane, const float* cost) {
     for (int y = cell.core.y; y < cell.core.y + cell.core.height; ++y) {
-      for (int x = cell.core.x; x < cell.core.x + cell.core.width; ++x, ++i) {
+      for (int x = cell.core.x; x < cell.core.x + cell.core.width; ++x, ++cost) {
         const std::size_t p = labels.index(x, y);
-        for (int k = 0; k < count; ++k) {
-          const float cost = worker.costs.costs(k)[i];
-          if (first + k > 0 && cost >= labels.cost[p]) continue;
-          labels.planes.set(p, batch[k]);
-          labels.cost[p] = cost;
-        }
+        if (!first && *cost >= labels.cost[p]) continue;
+        labels.planes.set(p, plane);
+        labels.cost[p] = *cost;
       }
     }
-  }
+    first = false;
+  });
 }
 
 ViewSolver::Candidates ViewSolver::initialPlanes(const Cell& cell, Worker& worker, Random& random) const {
@@ -168,19 +175,13 @@ void ViewSolver::visitCell(int layer, const Cell& cell, int round, bool unary_on
                            Labels& labels) const {
   const Candidates planes = propose(layer, cell, round, worker, labels);
   worker.move.begin(smoothness_, cell.region, labels);
-  for (std::size_t first = 0; first < planes.size(); first += kPlaneBatch) {
-    const int count = static_cast<int>(std::min<std::size_t>(kPlaneBatch, planes.size() - first));
-    PlaneBatch batch;
-    for (int k = 0; k < kPlaneBatch; ++k) batch[k] = planes[first + std::min(k, count - 1)];
-    cost_.evaluate(batch, cell.region, worker.costs);
-    for (int k = 0; k < count; ++k) {
-      if (unary_only) {
-        worker.move.offerUnary(batch[k], worker.costs.costs(k));
-      } else {
-        worker.move.offer(batch[k], worker.costs.costs(k));
-      }
+  evaluate(planes, cell.region, worker.costs, [&](const Plane& plane, const float* costs) {
+    if (unary_only) {
+      worker.move.offerUnary(plane, costs);
+    } else {
+      worker.move.offer(plane, costs);
     }
-  }
+  });
 }
 
 ViewSolver::Candidates ViewSolver::propose(int layer, const Cell& cell, int round, Worker& worker,

@@ -59,6 +59,8 @@ class ViewSolver {
 
   void initialize(Labels& labels);
   Candidates initialPlanes(const Cell& cell, Worker& worker, Random& random) const;
+  template <typename Use>
+  void evaluate(const Candidates& planes, const cv::Rect& area, PlaneCostBuffers& buffers, const Use& use) const;
   void choose(const Candidates& planes, const Cell& cell, Worker& worker, Labels& labels) const;
   bool round(int number, bool unary_only, const StopCondition& stop, Labels& labels);
   bool visitLayer(int layer, int round, bool unary_only, const StopCondition& stop, Labels& labels);
