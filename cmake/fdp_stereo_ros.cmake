@@ -17,7 +17,6 @@ add_library(fdp_stereo_nodelet
   src/ros/node_status.cpp
   src/ros/node_reporter.cpp
   src/ros/periodic_task.cpp
-  src/ros/diagnosis.cpp
   src/ros/thread_priority.cpp
   src/ros/disparity_nodelet.cpp
 )
@@ -57,6 +56,10 @@ if(TARGET match)
     target_compile_definitions(${tool} PRIVATE FDP_STEREO_VERSION="${PROJECT_VERSION}")
     target_link_libraries(${tool} PRIVATE fdp_stereo_nodelet)
   endforeach()
+  add_library(fdp_stereo_diagnosis STATIC tools/diagnosis.cpp)
+  target_include_directories(fdp_stereo_diagnosis PUBLIC ${PROJECT_SOURCE_DIR}/tools)
+  target_link_libraries(fdp_stereo_diagnosis PUBLIC fdp_stereo_nodelet)
+  target_link_libraries(doctor PRIVATE fdp_stereo_diagnosis)
 
   # The sample recording, from the pair in sample/.
   set(_sample ${PROJECT_SOURCE_DIR}/sample/motorcycle)
@@ -72,7 +75,7 @@ if(TARGET match)
 endif()
 
 # cfg/Disparity.cfg follows the list of parameters: build this target after a change there.
-add_executable(write_cfg EXCLUDE_FROM_ALL src/ros/write_cfg.cpp)
+add_executable(write_cfg EXCLUDE_FROM_ALL tools/write_cfg.cpp)
 target_link_libraries(write_cfg PRIVATE fdp_stereo_nodelet)
 add_custom_target(update_cfg COMMAND write_cfg ${PROJECT_SOURCE_DIR}/cfg/Disparity.cfg)
 
