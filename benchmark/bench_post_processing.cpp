@@ -47,7 +47,7 @@ BENCHMARK(BM_speckleFilter)->Unit(benchmark::kMillisecond);
 
 void BM_weightedMedian(benchmark::State& state) {
   const PipelineParams params = benchmarkParams();
-  run(state, [&](cv::Mat& d) { filterWeightedMedian(d, benchmarkPair().left, cv::Mat(), params.weighted_median); });
+  run(state, [&](cv::Mat& d) { filterWeightedMedian(d, benchmarkPair().left, params.weighted_median); });
 }
 BENCHMARK(BM_weightedMedian)->Unit(benchmark::kMillisecond);
 

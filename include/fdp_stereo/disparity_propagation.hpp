@@ -15,9 +15,8 @@ struct DisparityPropagationParams {
   bool enabled = true;
   bool image_seeds = false;  ///< spread SeedSource::kFeature too, not only other sensors' seeds
   PropagationForm form = PropagationForm::kSurface;
-  int window = 5;  ///< kWindow: W_p is window x window px, odd
-  double gamma =
-      10.0;  ///< eq. (11): kWindow: of |dI|_1; kSurface: of |dI| per step along the way, mean of the channels
+  int window = 5;          ///< kWindow: W_p is window x window px, odd
+  double gamma = 10.0;     ///< eq. (11), grey levels: kWindow: of |dI| from the seed; kSurface: per step along the way
   double reach_px = 30.0;  ///< kSurface: way over even colour at which the weight falls to 1/e
   double strength = 0.5;   ///< kSurface: share 0..1 of the prior in the cost beside a wholly trusted seed
   double spread_px = 1.5;  ///< kSurface: distance from the surface at which the prior reaches 39 % of its height

@@ -7,8 +7,8 @@
 namespace fdp_stereo {
 
 /// Stage 8e: evens out the sub-pixel error of neighbouring disparities without crossing edges: a separable bilateral
-/// mean, first along the rows, then along the columns. A neighbour at colour distance |dI|_1 (mean of the channels)
-/// and disparity difference e weighs max(0, 1 - (e / max_difference_px)^2) / (1 + (|dI|_1 / gamma)^2).
+/// mean, first along the rows, then along the columns. A neighbour at colour distance |dI|
+/// and disparity difference e weighs max(0, 1 - (e / max_difference_px)^2) / (1 + (|dI| / gamma)^2).
 struct DisparitySmoothingParams {
   int radius = 4;                  ///< px; 0 = off
   double gamma = 15.0;             ///< grey levels

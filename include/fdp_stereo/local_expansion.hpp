@@ -29,7 +29,7 @@ struct LocalExpansionParams {
   // The energy.
   double lambda = 0.5;           ///< weight of the smoothness term
   double tau_smooth_px = 1.0;    ///< truncation of the plane distance psi_pq
-  double gamma = 10.0;           ///< w_pq = max(epsilon, exp(-|I_p - I_q|_1 / gamma))
+  double gamma = 10.0 / 3.0;     ///< grey levels: w_pq = max(epsilon, exp(-|I_p - I_q| / gamma)); 10 for the sum of 3
   double epsilon = 0.01;         ///< smallest w_pq
   double data_scale = 0.5;       ///< factor of the matching cost, so that the largest is about 1
   double data_threshold = 0.5;   ///< truncation of the matching cost, after data_scale
@@ -56,10 +56,10 @@ struct LocalExpansionParams {
   int seed = 0;                      ///< of the random numbers
   double max_time_ms = 0.0;          ///< return the best labelling after this time; 0 = no limit
   // Afterwards.
-  bool both_views = true;          ///< label the right view too, check and fill
-  double max_difference_px = 1.5;  ///< of the left-right check
-  int median_radius_px = 20;       ///< weighted median on filled pixels; 0 = off
-  double median_gamma = 10.0;      ///< its weight exp(-|dI|_1 / gamma)
+  bool both_views = true;            ///< label the right view too, check and fill
+  double max_difference_px = 1.5;    ///< of the left-right check
+  int median_radius_px = 20;         ///< weighted median on filled pixels; 0 = off
+  double median_gamma = 10.0 / 3.0;  ///< grey levels: its weight exp(-|dI| / gamma)
 };
 
 /// A view of a pair as local expansion works on it: the right one is mirrored, so that both look alike.

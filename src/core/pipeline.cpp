@@ -10,7 +10,6 @@
 #include <omp.h>
 #include <opencv2/imgproc.hpp>
 
-#include "costs/image_planes.hpp"
 #include "costs/subpixel_volume.hpp"
 #include "fdp_stereo/confidence.hpp"
 #include "fdp_stereo/hidden_pixels.hpp"
@@ -18,6 +17,7 @@
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/scaling.hpp"
 #include "images/blind_pixels.hpp"
+#include "images/colour.hpp"
 #include "images/cost_views.hpp"
 #include "simd/simd.hpp"
 
@@ -300,9 +300,8 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   }
   const cv::Mat closed = params_.hole_closing.enabled ? closeHoles(disparity) : cv::Mat();
   judge(frame, roughness, closed, result);
-  const cv::Mat holes = noneMask(disparity);
   if (params_.hole_filling.enabled) fillHoles(disparity, params_.hole_filling.max_size);
-  filterWeightedMedian(disparity, left, holes, params_.weighted_median);
+  filterWeightedMedian(disparity, left, params_.weighted_median);
   smoothDisparity(disparity, left, params_.disparity_smoothing);
   result.disparity = disparity;
 }

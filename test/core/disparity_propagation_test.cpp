@@ -59,12 +59,12 @@ TEST(DisparityPropagation, HandWorkedCase) {
   EXPECT_DOUBLE_EQ(share, 1.0);
 }
 
-// Colour distances add up over the channels: |1| + |2| + |4| = 7.
-TEST(DisparityPropagation, ColourIsTheSumOverChannels) {
+// The colour distance is the mean over the channels: (|1| + |2| + |4|) / 3 = 7 / 3; 200 (1 - exp(-7 / 30)) = 41.6.
+TEST(DisparityPropagation, ColourIsTheMeanOverChannels) {
   const cv::Mat left = (cv::Mat_<cv::Vec3b>(1, 2) << cv::Vec3b(10, 20, 30), cv::Vec3b(11, 22, 26));
   CostVolume volume = constantVolume(left.size(), {0, 2}, CostVolume::Depth::kU16, 200);
   propagateDisparity({seedAt(0, 0, 1)}, left, windowParams(3, 10.0), volume);
-  EXPECT_EQ(volume.raw(0, 1, 1), 101);
+  EXPECT_EQ(volume.raw(0, 1, 1), 42);
 }
 
 class PropagationReference : public ::testing::TestWithParam<std::tuple<int, int, int>> {};

@@ -61,7 +61,7 @@ struct Scene {
 };
 
 TEST(Smoothness, EnergyOfTwoPixelsWorkedByHand) {
-  // Colours differ by 2 + 3 + 5 = 10, gamma 10: w = exp(-1). Planes 4 and 4.25 differ by 0.25 at both pixels: psi =
+  // Colours differ by 2 + 3 + 5 = 3 * gamma: w = exp(-1). Planes 4 and 4.25 differ by 0.25 at both pixels: psi =
   // 0.5.
   cv::Mat image(1, 2, CV_8UC3, cv::Scalar(10, 10, 10));
   image.at<cv::Vec3b>(0, 1) = {12, 13, 15};
@@ -70,7 +70,7 @@ TEST(Smoothness, EnergyOfTwoPixelsWorkedByHand) {
   labels.planes.set(0, {0.0F, 0.0F, 4.0F});
   labels.planes.set(1, {0.0F, 0.0F, 4.25F});
   labels.cost = {0.125F, 0.25F};
-  const Smoothness smoothness(image, {2.0, 1.0, 10.0, 0.01});
+  const Smoothness smoothness(image, {2.0, 1.0, 10.0 / 3.0, 0.01});
   EXPECT_NEAR(energyOf(labels, smoothness), 0.375 + 2.0 * std::exp(-1.0) * 0.5, 1e-6);
 }
 

@@ -295,7 +295,7 @@ TEST(Preset, PaperHasThePublishedValuesAndNoLaterStage) {
   EXPECT_DOUBLE_EQ(paper.matching_cost.lambda_census, 30.0);
   EXPECT_DOUBLE_EQ(paper.feature_matching.max_ratio, 0.6);
   EXPECT_EQ(paper.disparity_propagation.window, 5);
-  EXPECT_DOUBLE_EQ(paper.disparity_propagation.gamma, 10.0);
+  EXPECT_NEAR(paper.disparity_propagation.gamma, 10.0 / 3.0, 1e-3);
   EXPECT_FALSE(paper.row_alignment.enabled);
 }
 

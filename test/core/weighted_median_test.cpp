@@ -25,7 +25,7 @@ WeightedMedianParams paramsOf(int radius, double gamma) {
 
 TEST(WeightedMedian, HandWorkedPlainMedian) {
   cv::Mat disparity = (cv::Mat_<float>(3, 3) << 1, 2, 3, 4, 90, 5, 6, 7, 8);
-  filterWeightedMedian(disparity, cv::Mat(3, 3, CV_8UC1, cv::Scalar(0)), {}, paramsOf(1, 0.0));
+  filterWeightedMedian(disparity, cv::Mat(3, 3, CV_8UC1, cv::Scalar(0)), paramsOf(1, 0.0));
   EXPECT_EQ(disparity.at<float>(1, 1), 5.0F);
 }
 
@@ -33,7 +33,7 @@ TEST(WeightedMedian, HandWorkedWeights) {
   // The centre of the row looks like its left neighbour (weight 1 each), not like its right ones (weight e^-10).
   cv::Mat disparity = (cv::Mat_<float>(1, 5) << 3.0F, 3.0F, 8.0F, 9.0F, 9.0F);
   const cv::Mat left = (cv::Mat_<std::uint8_t>(1, 5) << 50, 50, 50, 150, 150);
-  filterWeightedMedian(disparity, left, {}, paramsOf(2, 10.0));
+  filterWeightedMedian(disparity, left, paramsOf(2, 10.0));
   EXPECT_EQ(disparity.at<float>(0, 2), 3.0F);
 }
 
@@ -42,10 +42,12 @@ TEST(WeightedMedian, SplitsTheWeightInHalves) {
     for (const double gamma : {0.0, 10.0, 60.0}) {
       for (const int radius : {1, 2, 4}) {
         for (const auto& [rows, cols] : {std::pair{1, 21}, {13, 1}, {14, 27}}) {
+          const double window = (2.0 * radius + 1.0) * (2.0 * radius + 1.0);
+          const double rounding = window * window / 65535.0;  // half a step of each weight, in both halves
           const cv::Mat before = reference::randomDisparity(rows, cols, 0.0, 30.0, 0.2, 5);
           const cv::Mat left = reference::texture(rows, cols, type, 6);
           cv::Mat after = before.clone();
-          filterWeightedMedian(after, left, {}, paramsOf(radius, gamma));
+          filterWeightedMedian(after, left, paramsOf(radius, gamma));
           for (int y = 0; y < rows; ++y) {
             for (int x = 0; x < cols; ++x) {
               const float value = after.at<float>(y, x);
@@ -53,27 +55,14 @@ TEST(WeightedMedian, SplitsTheWeightInHalves) {
               if (std::isnan(value)) continue;
               const auto balance = reference::medianBalance(before, left, x, y, radius, gamma, value, kTolerance);
               ASSERT_TRUE(balance.is_a_sample) << x << ", " << y;
-              ASSERT_LE(balance.twice_below, balance.all * (1.0 + 3e-3)) << x << ", " << y;
-              ASSERT_LE(balance.twice_above, balance.all * (1.0 + 3e-3)) << x << ", " << y;
+              ASSERT_LE(balance.twice_below, balance.all * (1.0 + 3e-3) + rounding) << x << ", " << y;
+              ASSERT_LE(balance.twice_above, balance.all * (1.0 + 3e-3) + rounding) << x << ", " << y;
             }
           }
         }
       }
     }
   }
-}
-
-TEST(WeightedMedian, TouchesOnlyTheMaskWhereAsked) {
-  const cv::Mat before = reference::randomDisparity(9, 12, 0.0, 30.0, 0.0, 7);
-  cv::Mat mask(9, 12, CV_8UC1, cv::Scalar(0));
-  mask.row(4).setTo(255);
-  WeightedMedianParams params = paramsOf(2, 0.0);
-  params.only_filled = true;
-  cv::Mat after = before.clone();
-  filterWeightedMedian(after, cv::Mat(9, 12, CV_8UC1, cv::Scalar(0)), mask, params);
-  EXPECT_EQ(cv::norm(after.rowRange(0, 4), before.rowRange(0, 4), cv::NORM_INF), 0.0);
-  EXPECT_EQ(cv::norm(after.rowRange(5, 9), before.rowRange(5, 9), cv::NORM_INF), 0.0);
-  EXPECT_GT(cv::norm(after.row(4), before.row(4), cv::NORM_INF), 0.0);
 }
 
 TEST(WeightedMedian, LeavesFlatPlacesAloneWhereAsked) {
@@ -84,7 +73,7 @@ TEST(WeightedMedian, LeavesFlatPlacesAloneWhereAsked) {
   WeightedMedianParams params = paramsOf(2, 0.0);
   params.min_range_px = 1.0;
   cv::Mat after = before.clone();
-  filterWeightedMedian(after, cv::Mat(9, 15, CV_8UC1, cv::Scalar(0)), cv::Mat(9, 15, CV_8UC1, cv::Scalar(0)), params);
+  filterWeightedMedian(after, cv::Mat(9, 15, CV_8UC1, cv::Scalar(0)), params);
   EXPECT_LT(after.at<float>(4, 7), 2.0F);
   after.at<float>(4, 7) = before.at<float>(4, 7);
   for (int y = 0; y < 9; ++y) {
@@ -98,7 +87,7 @@ TEST(WeightedMedian, LeavesFlatPlacesAloneWhereAsked) {
 TEST(WeightedMedian, RadiusZeroIsOff) {
   const cv::Mat before = reference::randomDisparity(5, 6, 0.0, 30.0, 0.3, 8);
   cv::Mat after = before.clone();
-  filterWeightedMedian(after, cv::Mat(5, 6, CV_8UC1, cv::Scalar(0)), {}, paramsOf(0, 10.0));
+  filterWeightedMedian(after, cv::Mat(5, 6, CV_8UC1, cv::Scalar(0)), paramsOf(0, 10.0));
   EXPECT_EQ(reference::differingPixels(after, before), 0);
 }
 
@@ -110,7 +99,7 @@ TEST_P(WeightedMedianKernel, GivesTheSameBits) {
   const cv::Mat left = reference::texture(40, 57, CV_8UC3, 10);
   const auto filtered = [&] {
     cv::Mat after = before.clone();
-    filterWeightedMedian(after, left, {}, paramsOf(3, 30.0));
+    filterWeightedMedian(after, left, paramsOf(3, 30.0));
     return after;
   };
   EXPECT_EQ(reference::differingPixels(onThisSet(filtered), onBaseline(filtered)), 0);

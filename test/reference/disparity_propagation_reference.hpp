@@ -32,7 +32,7 @@ inline void propagateWindow(Seeds seeds, const cv::Mat& left, int window, double
           colours += std::abs(static_cast<int>(left.ptr(sy)[left.channels() * sx + c]) -
                               static_cast<int>(left.ptr(y)[left.channels() * x + c]));
         }
-        const double weight = std::exp(-colours / gamma);
+        const double weight = std::exp(-colours / (left.channels() * gamma));
         const double factor = std::round((1.0 - weight) * 65536.0);
         const int index = d - volume.range().min;
         volume.setRaw(y, x, index,

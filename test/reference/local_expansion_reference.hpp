@@ -100,7 +100,7 @@ inline double pairCost(const cv::Mat& image, cv::Point p, cv::Point q, const Ref
     difference += std::abs(at_p - at_q);
   }
   const double psi = std::fabs(f.at(p.x, p.y) - g.at(p.x, p.y)) + std::fabs(f.at(q.x, q.y) - g.at(q.x, q.y));
-  return lambda * std::max(epsilon, std::exp(-difference / gamma)) * std::min(psi, tau);
+  return lambda * std::max(epsilon, std::exp(-difference / 3.0 / gamma)) * std::min(psi, tau);
 }
 
 }  // namespace fdp_stereo::reference

@@ -65,14 +65,14 @@ inline float filledFromRow(const cv::Mat& d, int x, int y) {
   return std::min(left, right);
 }
 
-/// |I_p - I_q|_1 over the channels.
-inline int colourDistance(const cv::Mat& image, cv::Point p, cv::Point q) {
+/// |I_p - I_q|: the mean over the channels.
+inline double colourDistance(const cv::Mat& image, cv::Point p, cv::Point q) {
   const int channels = image.channels();
   int sum = 0;
   for (int c = 0; c < channels; ++c) {
     sum += std::abs(image.ptr(p.y)[p.x * channels + c] - image.ptr(q.y)[q.x * channels + c]);
   }
-  return sum;
+  return static_cast<double>(sum) / channels;
 }
 
 /// Twice the weight of the neighbours clearly (by more than `tolerance`) below and above `value`, and the weight of
@@ -111,7 +111,7 @@ inline float bilateralMean(const cv::Mat& d, const cv::Mat& image, int x, int y,
     const cv::Point q = along_row ? cv::Point(x + k, y) : cv::Point(x, y + k);
     if (q.x < 0 || q.y < 0 || q.x >= d.cols || q.y >= d.rows || std::isnan(d.at<float>(q))) continue;
     const double e = (d.at<float>(q) - centre) / max_difference;
-    const double colour = colourDistance(image, {x, y}, q) / static_cast<double>(image.channels()) / gamma;
+    const double colour = colourDistance(image, {x, y}, q) / gamma;
     const double weight = std::max(0.0, 1.0 - e * e) / (1.0 + colour * colour);
     sum += weight * d.at<float>(q);
     weights += weight;

@@ -5,16 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgproc.hpp>
-
 namespace fdp_stereo {
-
-const cv::Mat& eightBitGrey(const cv::Mat& image, const cv::Mat& grey, cv::Mat& buffer) {
-  if (image.channels() == 1) return image;
-  if (grey.type() == CV_8UC1 && !grey.empty()) return grey;
-  cv::cvtColor(image, buffer, cv::COLOR_BGR2GRAY);
-  return buffer;
-}
 
 void ImagePlanes::useChannels(const cv::Mat& image, double share) {
   image_ = image;

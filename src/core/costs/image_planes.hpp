@@ -41,7 +41,4 @@ class ImagePlanes {
   bool birchfield_tomasi_ = false;
 };
 
-/// The grey image in 8 bits: `grey` or `image` itself, or made in `buffer` where neither has 8 bits and one channel.
-const cv::Mat& eightBitGrey(const cv::Mat& image, const cv::Mat& grey, cv::Mat& buffer);
-
 }  // namespace fdp_stereo

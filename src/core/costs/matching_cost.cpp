@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "costs/image_planes.hpp"
+#include "images/colour.hpp"
 #include "parallel.hpp"
 #include "simd/matching_cost_kernels.hpp"
 

@@ -12,6 +12,7 @@
 
 #include "features/corner_matching.hpp"
 #include "features/patch_refinement.hpp"
+#include "images/colour.hpp"
 
 // OpenCV 4.2 has no SIFT in its main part; FDP_STEREO_FORCE_OPENCV_42 builds what is built there.
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 404 && !defined(FDP_STEREO_FORCE_OPENCV_42)
@@ -26,15 +27,6 @@ constexpr float kMinCorrelation = 0.8F;
 
 /// OpenCV's pyramids fail on smaller images.
 constexpr int kMinSidePx = 32;
-
-/// Takes the grey image that there is, if it has 8 bits.
-cv::Mat toGrey(const cv::Mat& image, const cv::Mat& known) {
-  if (image.type() == CV_8UC1) return image;
-  if (known.type() == CV_8UC1 && known.size() == image.size()) return known;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
 
 void checkPair(const StereoPair& pair) {
   const int type = pair.left.type();
@@ -148,8 +140,9 @@ FeatureMatching matchFeatures(const StereoPair& pair, DisparityRange range, cons
     result.detector = FeatureDetector::kOrb;
     result.note = "this build of OpenCV has no SIFT: matched with ORB";
   }
-  const cv::Mat left = toGrey(pair.left, pair.left_grey);
-  const cv::Mat right = toGrey(pair.right, pair.right_grey);
+  cv::Mat made_left, made_right;
+  const cv::Mat& left = eightBitGrey(pair.left, pair.left_grey, made_left);
+  const cv::Mat& right = eightBitGrey(pair.right, pair.right_grey, made_right);
   if (result.detector == FeatureDetector::kFastCensus) {
     for (const CornerMatch& m : matchCorners(left, right, range, params)) {
       result.matches.push_back({cv::Point2f(m.left), cv::Point2f(m.right), 1.0F - m.ratio});

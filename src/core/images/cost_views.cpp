@@ -7,7 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "costs/image_planes.hpp"
+#include "images/colour.hpp"
 
 namespace fdp_stereo {
 namespace {

@@ -8,6 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "images/colour.hpp"
+
 namespace fdp_stereo {
 namespace {
 
@@ -30,12 +32,6 @@ Seeds scaled(Seeds seeds, double x, double y) {
     seed.d *= static_cast<float>(x);
   }
   return seeds;
-}
-
-float colourDistance(const std::uint8_t* a, const std::uint8_t* b, int channels) {
-  int sum = 0;
-  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
-  return static_cast<float>(sum) / static_cast<float>(channels);
 }
 
 /// What the loop over the full pixels reads.

@@ -125,7 +125,7 @@ void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagati
   list.add("form", propagation.form, {"window", "surface"},
            "Spread one disparity over a window as published, or a slanted surface.");
   list.add("window", propagation.window, 1, 51, "px", "Form window: side of the window W_p, odd.");
-  list.add("gamma", propagation.gamma, 1.0, 100.0, "",
+  list.add("gamma", propagation.gamma, 1.0, 100.0, "grey levels",
            "Colour difference at which the influence of a seed falls to 1/e (eq. 11).");
   list.add("strength", propagation.strength, 0.0, 1.0, "",
            "Form surface: share of the seeds' prior in the cost of a pixel beside a trusted seed.")
@@ -213,11 +213,11 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
   list.stage("weighted_median");
   list.add("radius", p.weighted_median.radius, 0, 7, "px", "Radius of the window of the weighted median; 0 is off.")
       .step = TuningStep::kFilters;
-  list.add("gamma", p.weighted_median.gamma, 0.0, 200.0, "",
+  list.add("gamma", p.weighted_median.gamma, 0.0, 100.0, "grey levels",
            "Colour difference at which a neighbour's weight falls to 1/e; 0 is the plain median.");
   list.stage("disparity_smoothing");
   list.add("radius", p.disparity_smoothing.radius, 0, 20, "px", "Reach of the edge-preserving mean; 0 is off.");
-  list.add("gamma", p.disparity_smoothing.gamma, 1.0, 200.0, "",
+  list.add("gamma", p.disparity_smoothing.gamma, 1.0, 100.0, "grey levels",
            "Colour difference at which a neighbour's weight is halved.");
 }
 

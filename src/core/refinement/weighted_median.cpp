@@ -20,11 +20,11 @@ constexpr double kStepsPerPx = 64.0;        // of the samples
 constexpr double kMostSteps = 65000.0;      // between the smallest and the largest
 constexpr std::int16_t kSmallest = -32767;  // sample
 
-/// exp(-|dI|_1 / gamma) of eq. (11); alike for all where gamma is 0.
-MedianWeight weightOf(double gamma, int side) {
+/// exp(-|dI| / gamma) of eq. (11) for the sum of the channels' differences; alike for all where gamma is 0.
+MedianWeight weightOf(double gamma, int channels, int side) {
   MedianWeight weight{};
   weight.largest = static_cast<std::uint16_t>(65535 / (side * side));
-  if (gamma > 0.0) weight.decay = makeDecay(gamma);
+  if (gamma > 0.0) weight.decay = makeDecay(channels * gamma);
   return weight;
 }
 
@@ -133,24 +133,21 @@ struct Scratch {
 
 }  // namespace
 
-void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const cv::Mat& mask,
-                          const WeightedMedianParams& params) {
+void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const WeightedMedianParams& params) {
   if (params.radius <= 0) return;
   const cv::Mat before = disparity.clone();
   const int side = 2 * params.radius + 1, width = disparity.cols;
   const SampleScale scale(before);
   const PaddedSource source(before, scale, left, params.radius);
-  const MedianWeight weight = weightOf(params.gamma, side);
+  const MedianWeight weight = weightOf(params.gamma, left.channels(), side);
   const float min_range = params.min_range_px > 0.0 ? static_cast<float>(params.min_range_px) : -1.0F;
   const WeightedMedianKernels& kernels = FDP_STEREO_SELECT(weightedMedianKernels);
   const auto makeScratch = [&] { return Scratch(side, width); };
   parallelFor(disparity.rows, makeScratch, [&](int y, Scratch& scratch) {
     findEdges(before, y, min_range, scratch.low, scratch.high, scratch.wanted.data());
     auto* d = disparity.ptr<float>(y);
-    const auto* filled = mask.empty() ? nullptr : mask.ptr<std::uint8_t>(y);
     for (int x = 0; x < width; ++x) {
-      const bool skip = params.only_filled && (filled == nullptr || filled[x] == 0);
-      if (scratch.wanted[x] == 0 || skip || std::isnan(d[x])) continue;
+      if (scratch.wanted[x] == 0 || std::isnan(d[x])) continue;
       const auto median =
           kernels.weightedMedian(source.window(y, x), weight, scratch.values.data(), scratch.weights.data());
       if (median != source.centre(y, x)) d[x] = scale.toDisparity(median);

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "images/colour.hpp"
 #include "seeds/surface_propagation.hpp"
 
 namespace fdp_stereo {
@@ -41,19 +42,12 @@ const std::vector<GridSeed>& onGrid(const Seeds& seeds, DisparityAxis axis, cons
   return grid;
 }
 
-/// |a - b|_1 over the channels.
-int manhattan(const uchar* a, const uchar* b, int channels) {
-  int sum = 0;
-  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
-  return sum;
-}
-
-/// 2^16 (1 - w) of eq. (11) by colour distance.
-std::array<std::uint32_t, 3 * 255 + 1> makeFactors(double gamma) {
-  std::array<std::uint32_t, 3 * 255 + 1> factors{};
-  for (std::size_t i = 0; i < factors.size(); ++i) {
-    factors[i] = static_cast<std::uint32_t>(std::lround(65536.0 * (1.0 - std::exp(-static_cast<double>(i) / gamma))));
-  }
+/// 2^16 (1 - w) of eq. (11) by colourThirds().
+std::array<std::uint32_t, kThirds> makeFactors(double gamma) {
+  const auto weights = colourWeights(gamma);
+  std::array<std::uint32_t, kThirds> factors{};
+  std::transform(weights.begin(), weights.end(), factors.begin(),
+                 [](double w) { return static_cast<std::uint32_t>(std::lround(65536.0 * (1.0 - w))); });
   return factors;
 }
 
@@ -70,7 +64,7 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
     const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
     for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
       for (int x = std::max(0, seed.x - radius); x <= std::min(left.cols - 1, seed.x + radius); ++x) {
-        const std::uint32_t factor = factors[manhattan(centre, left.ptr<uchar>(y) + channels * x, channels)];
+        const std::uint32_t factor = factors[colourThirds(centre, left.ptr<uchar>(y) + channels * x, channels)];
         T& raw = volume.at<T>(y, x)[seed.index];
         raw = static_cast<T>((raw * factor + 32768U) >> 16U);
         touched[static_cast<std::size_t>(y) * left.cols + x] = 1;

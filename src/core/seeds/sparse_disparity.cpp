@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/io.hpp"
+#include "images/colour.hpp"
 #include "seeds/seed_grid.hpp"
 #include "seeds/seed_verification.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 constexpr int kNeighbours = 12;
 /// Agreeing neighbours that a seed needs at least: one may be wrong in the same way.
 constexpr int kMinAgreeing = 2;
-/// |dI|_1 per channel at which the say of a neighbour falls to 1/e.
+/// |dI| at which the say of a neighbour falls to 1/e.
 constexpr float kColourScale = 20.0F;
 
 bool before(const Seed& a, const Seed& b) { return std::tie(a.y, a.x, a.d) < std::tie(b.y, b.x, b.d); }
@@ -40,22 +41,10 @@ Seed fromMatch(const FeatureMatch& match) {
   return seed;
 }
 
-/// Takes the grey image that there is, if it has 8 bits.
-cv::Mat toGrey(const cv::Mat& image, const cv::Mat& known) {
-  if (image.channels() == 1) return image;
-  if (known.type() == CV_8UC1) return known;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
-float colourDistance(const cv::Mat& image, const Seed& a, const Seed& b) {
+float seedDistance(const cv::Mat& image, const Seed& a, const Seed& b) {
   const int channels = image.channels();
-  const uchar* p = image.ptr<uchar>(cvRound(a.y)) + channels * cvRound(a.x);
-  const uchar* q = image.ptr<uchar>(cvRound(b.y)) + channels * cvRound(b.x);
-  int sum = 0;
-  for (int c = 0; c < channels; ++c) sum += std::abs(p[c] - q[c]);
-  return static_cast<float>(sum) / static_cast<float>(channels);
+  return colourDistance(image.ptr<uchar>(cvRound(a.y)) + channels * cvRound(a.x),
+                        image.ptr<uchar>(cvRound(b.y)) + channels * cvRound(b.x), channels);
 }
 
 /// Share of the neighbours' weight that agrees with the seed; 0 where too few do.
@@ -71,7 +60,7 @@ float support(const Seeds& seeds, const SeedGrid& grid, int index, const cv::Mat
   for (const SeedGrid::Neighbour& n : neighbours) {
     const Seed& other = seeds[n.index];
     const float weight =
-        other.trust * std::exp(-n.distance_px / reach - colourDistance(left, seed, other) / kColourScale);
+        other.trust * std::exp(-n.distance_px / reach - seedDistance(left, seed, other) / kColourScale);
     all += weight;
     const double limit = params.tolerance_px + params.max_slope * n.distance_px;
     if (std::abs(other.d - seed.d) > limit) continue;
@@ -91,8 +80,9 @@ void filterSeeds(SparseDisparity& sparse, Keep keep) {
 
 /// Rejects matches whose surroundings do not move with them.
 void rejectEdges(const StereoPair& pair, const SparseDisparityParams& params, SparseDisparity& sparse) {
-  const cv::Mat left = toGrey(pair.left, pair.left_grey);
-  const cv::Mat right = toGrey(pair.right, pair.right_grey);
+  cv::Mat made_left, made_right;
+  const cv::Mat& left = eightBitGrey(pair.left, pair.left_grey, made_left);
+  const cv::Mat& right = eightBitGrey(pair.right, pair.right_grey, made_right);
   std::vector<float> deviations(sparse.seeds.size());
   for (int i = 0; i < static_cast<int>(deviations.size()); ++i) {
     const Seed& seed = sparse.seeds[i];

@@ -11,6 +11,7 @@
 
 #include <Eigen/LU>
 
+#include "images/colour.hpp"
 #include "simd/propagation_kernels.hpp"
 
 namespace fdp_stereo {
@@ -30,13 +31,6 @@ constexpr float kLastFitScalePx = 0.5F;
 constexpr int kFitRounds = 6;
 constexpr double kLevelWeight = 0.5F;  // of a level plane, where the neighbours say little
 
-/// Mean over the channels of |a - b|.
-float colourStep(const uchar* a, const uchar* b, int channels) {
-  int sum = 0;
-  for (int c = 0; c < channels; ++c) sum += std::abs(a[c] - b[c]);
-  return static_cast<float>(sum) / static_cast<float>(channels);
-}
-
 /// Cost of the step from each pixel to its right (dx = 1) or lower (dy = 1) neighbour.
 cv::Mat stepCosts(const cv::Mat& left, int dx, int dy, double gamma, double reach_px) {
   const int channels = left.channels();
@@ -49,7 +43,7 @@ cv::Mat stepCosts(const cv::Mat& left, int dx, int dy, double gamma, double reac
     const uchar* there = left.ptr<uchar>(y + dy) + channels * dx;
     auto* cost = costs.ptr<float>(y);
     for (int x = 0; x < left.cols - dx; ++x) {
-      cost[x] = per_px + per_level * colourStep(here + channels * x, there + channels * x, channels);
+      cost[x] = per_px + per_level * colourDistance(here + channels * x, there + channels * x, channels);
     }
   }
   return costs;

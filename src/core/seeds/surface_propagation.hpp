@@ -19,7 +19,7 @@ struct GeodesicMap {
   cv::Mat down;      ///< CV_32FC1, to the lower one
 };
 
-/// A way costs 1 / reach_px per pixel and |dI|_1 / gamma (mean over the channels) per step (eq. 11's exponent along a
+/// A way costs 1 / reach_px per pixel and |dI| / gamma per step (eq. 11's exponent along a
 /// path, with a distance term). Ways follow rows and columns; two rounds of four sweeps.
 GeodesicMap spreadSeeds(const Seeds& seeds, const cv::Mat& left, double gamma, double reach_px);
 

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimizers/local_expansion/post_processing.hpp"
-#include "parallel.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+
 #include <opencv2/imgproc.hpp>
+
+#include "images/colour.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {
@@ -18,27 +20,17 @@ struct WeightedPixel {
   int x, y;
 };
 
-// exp(-i / gamma) by colour distance.
-std::vector<float> weightTable(double gamma) {
-  std::vector<float> table(3 * 255 + 1);
-  for (std::size_t i = 0; i < table.size(); ++i)
-    table[i] = std::exp(-static_cast<float>(i) / static_cast<float>(gamma));
-  return table;
-}
-
-// The window of a pixel, colours compared over three channels (a grey difference counts three times).
-void collectWindow(const cv::Mat& image, const Labels& labels, cv::Point p, int radius, const std::vector<float>& table,
-                   std::vector<WeightedPixel>& window) {
+// table: the weights by colourThirds().
+void collectWindow(const cv::Mat& image, const Labels& labels, cv::Point p, int radius,
+                   const std::array<double, kThirds>& table, std::vector<WeightedPixel>& window) {
   const int channels = image.channels();
   const std::uint8_t* centre = image.ptr<std::uint8_t>(p.y) + p.x * channels;
   window.clear();
   for (int y = std::max(p.y - radius, 0); y <= std::min(p.y + radius, image.rows - 1); ++y) {
     const std::uint8_t* row = image.ptr<std::uint8_t>(y);
     for (int x = std::max(p.x - radius, 0); x <= std::min(p.x + radius, image.cols - 1); ++x) {
-      int distance = 0;
-      for (int c = 0; c < channels; ++c) distance += std::abs(row[x * channels + c] - centre[c]);
-      if (channels == 1) distance *= 3;
-      window.push_back({labels.plane(x, y).at(p.x, p.y), table[distance], x, y});
+      const double weight = table[colourThirds(row + x * channels, centre, channels)];
+      window.push_back({labels.plane(x, y).at(p.x, p.y), static_cast<float>(weight), x, y});
     }
   }
 }
@@ -117,7 +109,7 @@ void fillPlanes(const cv::Mat& consistent, Labels& labels) {
 
 void filterPlanes(const cv::Mat& image, const cv::Mat& consistent, int radius_px, double gamma, Labels& labels) {
   if (radius_px <= 0) return;
-  const std::vector<float> table = weightTable(gamma);
+  const auto table = colourWeights(gamma);
   const Labels before = labels;
   using Window = std::vector<WeightedPixel>;
   parallelFor(

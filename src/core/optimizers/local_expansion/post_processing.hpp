@@ -19,7 +19,7 @@ cv::Mat consistentPixels(const Labels& own, const Labels& other, double max_diff
 void fillPlanes(const cv::Mat& consistent, Labels& labels);
 
 /// Gives every pixel where `consistent` is 0 the plane at the weighted median of its window: planes sorted by their
-/// disparity at this pixel, weights exp(-|dI|_1 / gamma). radius_px 0 = off.
+/// disparity at this pixel, weights exp(-|dI| / gamma). radius_px 0 = off.
 void filterPlanes(const cv::Mat& image, const cv::Mat& consistent, int radius_px, double gamma, Labels& labels);
 
 /// The disparity map, clipped to the range. CV_32FC1.

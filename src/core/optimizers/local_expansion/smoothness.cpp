@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+
+#include "images/colour.hpp"
 
 namespace fdp_stereo::local_expansion {
 namespace {
@@ -12,13 +13,10 @@ namespace {
 const std::array<cv::Point, kPairDirections> kSteps = {cv::Point(1, 0), cv::Point(1, 1), cv::Point(0, 1),
                                                        cv::Point(-1, 1)};
 
-// |I_p - I_q|_1 over three channels.
-int colourDistance(const cv::Mat& image, cv::Point p, cv::Point q) {
+int colourThirds(const cv::Mat& image, cv::Point p, cv::Point q) {
   const int channels = image.channels();
-  const std::uint8_t* a = image.ptr<std::uint8_t>(p.y) + p.x * channels;
-  const std::uint8_t* b = image.ptr<std::uint8_t>(q.y) + q.x * channels;
-  if (channels == 1) return 3 * std::abs(a[0] - b[0]);
-  return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+  return fdp_stereo::colourThirds(image.ptr<std::uint8_t>(p.y) + p.x * channels,
+                                  image.ptr<std::uint8_t>(q.y) + q.x * channels, channels);
 }
 
 bool inside(cv::Size size, cv::Point p) { return p.x >= 0 && p.y >= 0 && p.x < size.width && p.y < size.height; }
@@ -27,11 +25,10 @@ bool inside(cv::Size size, cv::Point p) { return p.x >= 0 && p.y >= 0 && p.x < s
 
 Smoothness::Smoothness(const cv::Mat& image, const SmoothnessParams& params)
     : size_(image.size()), tau_(static_cast<float>(params.tau_px)) {
-  std::array<float, 3 * 255 + 1> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const double w = std::max(params.epsilon, std::exp(-static_cast<double>(i) / params.gamma));
-    table[i] = static_cast<float>(params.lambda * w);
-  }
+  std::array<float, kThirds> table{};
+  const auto weights = colourWeights(params.gamma);
+  std::transform(weights.begin(), weights.end(), table.begin(),
+                 [&](double w) { return static_cast<float>(params.lambda * std::max(params.epsilon, w)); });
   for (int d = 0; d < kPairDirections; ++d) {
     weights_[d].assign(image.total(), 0.0F);
     for (int y = 0; y < size_.height; ++y) {
@@ -39,7 +36,7 @@ Smoothness::Smoothness(const cv::Mat& image, const SmoothnessParams& params)
         const cv::Point p(x, y);
         const cv::Point q = p + kSteps[d];
         if (!inside(size_, q)) continue;
-        weights_[d][static_cast<std::size_t>(y) * size_.width + x] = table[colourDistance(image, p, q)];
+        weights_[d][static_cast<std::size_t>(y) * size_.width + x] = table[colourThirds(image, p, q)];
       }
     }
   }

@@ -14,13 +14,12 @@ namespace fdp_stereo::local_expansion {
 struct SmoothnessParams {
   double lambda = 0.5;
   double tau_px = 1.0;
-  double gamma = 10.0;
+  double gamma = 10.0 / 3.0;
   double epsilon = 0.01;
 };
 
 /// The smoothness term: lambda * sum over 8-neighbour pairs of w_pq * min(psi_pq, tau), where
-/// psi_pq = |d_p(f_p) - d_p(f_q)| + |d_q(f_p) - d_q(f_q)| and w_pq = max(epsilon, exp(-|I_p - I_q|_1 / gamma)), the
-/// difference summed over B, G, R (for grey images: three times the difference).
+/// psi_pq = |d_p(f_p) - d_p(f_q)| + |d_q(f_p) - d_q(f_q)| and w_pq = max(epsilon, exp(-|I_p - I_q| / gamma)).
 class Smoothness {
  public:
   /// image: CV_8UC1 or CV_8UC3.
