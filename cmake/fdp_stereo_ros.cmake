@@ -6,6 +6,7 @@ add_library(fdp_stereo_nodelet
   src/ros/camera.cpp
   src/ros/conversions.cpp
   src/ros/search_range.cpp
+  src/ros/node_params.cpp
   src/ros/params_ros.cpp
   src/ros/reconfigure_server.cpp
   src/ros/pair_synchronizer.cpp
@@ -77,7 +78,7 @@ endif()
 # cfg/Disparity.cfg follows the list of parameters: build this target after a change there.
 add_executable(write_cfg EXCLUDE_FROM_ALL tools/write_cfg.cpp)
 target_link_libraries(write_cfg PRIVATE fdp_stereo_nodelet)
-add_custom_target(update_cfg COMMAND write_cfg ${PROJECT_SOURCE_DIR}/cfg/Disparity.cfg)
+add_custom_target(update_cfg COMMAND write_cfg > ${PROJECT_SOURCE_DIR}/cfg/Disparity.cfg VERBATIM)
 
 install(TARGETS disparity_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

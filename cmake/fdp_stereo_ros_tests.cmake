@@ -59,7 +59,9 @@ if(CATKIN_ENABLE_TESTING)
   set_tests_properties(master_gone PROPERTIES LABELS ros)
   add_test(NAME out_of_memory COMMAND ${PROJECT_SOURCE_DIR}/test/ros/out_of_memory_test.sh ${CATKIN_DEVEL_PREFIX})
   set_tests_properties(out_of_memory PROPERTIES LABELS manager) # sanitizers need all addresses
-  add_dependencies(ros_tests disparity_node)
+  add_test(NAME cfg_is_current COMMAND sh -c "$<TARGET_FILE:write_cfg> | diff ${PROJECT_SOURCE_DIR}/cfg/Disparity.cfg -")
+  set_tests_properties(cfg_is_current PROPERTIES LABELS docs)
+  add_dependencies(ros_tests disparity_node write_cfg)
   if(TARGET match) # these run command-line tools
     fdp_stereo_add_ros_test(recordings manager)
     add_test(NAME doctor COMMAND ${PROJECT_SOURCE_DIR}/test/ros/doctor_test.sh ${CATKIN_DEVEL_PREFIX})

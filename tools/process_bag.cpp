@@ -3,8 +3,6 @@
 //
 // process_bag IN.bag OUT.bag: the nodelet's outputs for every pair of a recording, without a roscore.
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -14,24 +12,23 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/CompressedImage.h>
-#include <unistd.h>
 #include <boost/make_shared.hpp>
 
 #include "bag_pairs.hpp"
+#include "bag_progress.hpp"
 #include "bag_topics.hpp"
-#include "calibration_file.hpp"
 #include "command_line.hpp"
 #include "compressed_image.hpp"
 #include "frame_processor.hpp"
 #include "output_bag.hpp"
 #include "rectifier.hpp"
+#include "standing_calibration.hpp"
 
 namespace fdp_stereo {
 namespace {
 
 namespace fs = std::filesystem;
 using sensor_msgs::CameraInfo;
-using sensor_msgs::CameraInfoConstPtr;
 
 constexpr char kImage[] = "sensor_msgs/Image";
 constexpr char kCompressedImage[] = "sensor_msgs/CompressedImage";
@@ -109,59 +106,6 @@ bool isRectifiedName(std::string topic) {
   const std::string name = topic.substr(topic.rfind('/') + 1);
   return name.find("rect") != std::string::npos && name.find("unrect") == std::string::npos;
 }
-
-/// The calibration of one view where it does not come with every image: from a file, or sent once or now and then.
-class StandingCalibration {
- public:
-  StandingCalibration(const rosbag::Bag& bag, const BagTopics& counts, const std::string& image_topic,
-                      const std::string& info_topic, const std::string& file) {
-    if (!file.empty()) {
-      info_ = boost::make_shared<CameraInfo>(readCalibration(file));
-    } else if (counts.count(image_topic) > 1 && 2 * counts.count(info_topic) <= counts.count(image_topic)) {
-      rosbag::View infos(bag, rosbag::TopicQuery(info_topic));
-      info_ = infos.begin()->instantiate<CameraInfo>();
-    }
-  }
-  bool inForce() const { return info_ != nullptr; }
-  void replace(const CameraInfoConstPtr& info) { info_ = info; }
-  /// The calibration as if it had come with an image.
-  CameraInfoConstPtr at(const std_msgs::Header& header) const {
-    auto info = boost::make_shared<CameraInfo>(*info_);
-    info->header.stamp = header.stamp;
-    if (info->header.frame_id.empty()) info->header.frame_id = header.frame_id;
-    return info;
-  }
-
- private:
-  CameraInfoConstPtr info_;
-};
-
-/// Frames, rate and time left; a line that is rewritten on a terminal, silent elsewhere.
-class BagProgress {
- public:
-  explicit BagProgress(std::size_t messages) : messages_(std::max<std::size_t>(1, messages)) {}
-  ~BagProgress() {
-    if (terminal_ && frames_ > 0) std::fputc('\n', stderr);
-  }
-  BagProgress(const BagProgress&) = delete;
-  BagProgress& operator=(const BagProgress&) = delete;
-
-  void frame(std::size_t messages_done) {
-    ++frames_;
-    if (!terminal_) return;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double share = static_cast<double>(messages_done) / static_cast<double>(messages_);
-    std::fprintf(stderr, "\r%zu frames, %.1f Hz, %.0f %%, %.0f s left\x1b[K", frames_,
-                 static_cast<double>(frames_) / seconds, 100.0 * share,
-                 seconds * (1.0 - share) / std::max(share, 1e-6));
-  }
-
- private:
-  std::size_t messages_;
-  std::size_t frames_ = 0;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// What is told at the end.
 struct Counts {

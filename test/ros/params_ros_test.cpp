@@ -4,10 +4,8 @@
 #include "reconfigure_server.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include <dynamic_reconfigure/config_tools.h>
 #include <fdp_stereo/DisparityConfig.h>
@@ -347,13 +345,6 @@ TEST(Parameters, ToolsKnowWhatBelongsToTheNode) {
     EXPECT_NO_THROW(loadYaml(params, ref.ros_name + ": " + toString(ref), "dump"));
     EXPECT_NO_THROW(loadYaml(params, ref.key + ": " + toString(ref), "dump"));
   }
-}
-
-TEST(CfgFile, IsWhatTheListSays) {
-  std::ifstream file(FDP_STEREO_SOURCE_DIR "/cfg/Disparity.cfg");
-  std::stringstream text;
-  text << file.rdbuf();
-  EXPECT_EQ(text.str(), reconfigureFile()) << "a parameter changed: build the target update_cfg";
 }
 
 }  // namespace
