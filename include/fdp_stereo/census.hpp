@@ -24,5 +24,11 @@ void checkCensus(const cv::Mat& grey, const CensusParams& params);
 
 /// The codes of row y alone (0 <= y < rows), in memory for one code per column. Expects what checkCensus() lets pass.
 void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes);
+/// Bytes that hold the bits of one code.
+int censusBytes(const CensusParams& params);
+
+/// The bits of row y byte by byte: of each pixel the first 8, then those of the next plane of `cols` bytes; the last
+/// plane has the rest. Bits come in the order of the codes.
+void computeCensusBytes(const cv::Mat& grey, const CensusParams& params, int y, std::uint8_t* planes);
 
 }  // namespace fdp_stereo

@@ -115,7 +115,8 @@ TEST_P(EveryType, EightBitsAreSixteenBitsRounded) {
   ASSERT_EQ(rounded.depth(), CostVolume::Depth::kU8);
   for (int x = 0; x < 40; ++x) {
     for (int i = 0; i < 20; ++i) {
-      ASSERT_NEAR(rounded.cost(3, x, i), exact.cost(3, x, i), 0.51 * (rounded.step() + exact.step()) + 2 * kThetaError);
+      ASSERT_NEAR(rounded.cost(3, x, i), exact.cost(3, x, i),
+                  0.51 * (2.0F * rounded.step() + exact.step()) + 2 * kThetaError);
     }
   }
 }

@@ -21,15 +21,15 @@ void compare(const CensusKernels& kernels, const std::uint16_t* neighbour, const
   kernels.compareU16(neighbour, centre, count, bits);
 }
 
-/// One row of codes from the rows around it, each with window_width / 2 replicated pixels on both sides.
-template <typename T>
+/// The bits of one row from the rows around it, each with window_width / 2 replicated pixels on both sides: up to 8 of
+/// each pixel at a time are handed to take(number of bits), in `bits`.
+template <typename T, typename Take>
 void censusRow(const std::vector<const T*>& rows, int width, const CensusParams& params, std::uint8_t* bits,
-               std::uint64_t* codes) {
+               Take take) {
   const CensusKernels& kernels = FDP_STEREO_SELECT(censusKernels);
   const int centre_row = params.window_height / 2;
   const int centre_column = params.window_width / 2;
   const T* centre = rows[centre_row] + centre_column;
-  std::fill(codes, codes + width, 0);
   std::fill(bits, bits + width, 0);
   int pending = 0;
   for (int j = 0; j < params.window_height; ++j) {
@@ -37,12 +37,12 @@ void censusRow(const std::vector<const T*>& rows, int width, const CensusParams&
       if (j == centre_row && i == centre_column) continue;
       compare(kernels, rows[j] + i, centre, width, bits);
       if (++pending < 8) continue;
-      kernels.append(bits, width, pending, codes);
+      take(pending);
       std::fill(bits, bits + width, 0);
       pending = 0;
     }
   }
-  if (pending > 0) kernels.append(bits, width, pending, codes);
+  if (pending > 0) take(pending);
 }
 
 /// Row y with window_width / 2 replicated pixels on both sides; y is clamped into the image.
@@ -54,8 +54,8 @@ void padRow(const cv::Mat& grey, int y, int border, T* padded) {
   std::fill(padded + border + grey.cols, padded + 2 * border + grey.cols, row[grey.cols - 1]);
 }
 
-template <typename T>
-void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
+template <typename T, typename Take>
+void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, Take take) {
   thread_local std::vector<T> window;  // keep their memory from row to row
   thread_local std::vector<std::uint8_t> bits;
   thread_local std::vector<const T*> rows;
@@ -68,7 +68,16 @@ void censusRowAt(const cv::Mat& grey, const CensusParams& params, int y, std::ui
     padRow(grey, y + j - params.window_height / 2, border, window.data() + j * length);
     rows[j] = window.data() + j * length;
   }
-  censusRow(rows, grey.cols, params, bits.data(), codes);
+  censusRow(rows, grey.cols, params, bits.data(), [&](int count) { take(bits.data(), count); });
+}
+
+template <typename Take>
+void censusRowOf(const cv::Mat& grey, const CensusParams& params, int y, Take take) {
+  if (grey.depth() == CV_8U) {
+    censusRowAt<std::uint8_t>(grey, params, y, take);
+  } else {
+    censusRowAt<std::uint16_t>(grey, params, y, take);
+  }
 }
 
 }  // namespace
@@ -86,11 +95,19 @@ void checkCensus(const cv::Mat& grey, const CensusParams& params) {
 }
 
 void computeCensusRow(const cv::Mat& grey, const CensusParams& params, int y, std::uint64_t* codes) {
-  if (grey.depth() == CV_8U) {
-    censusRowAt<std::uint8_t>(grey, params, y, codes);
-  } else {
-    censusRowAt<std::uint16_t>(grey, params, y, codes);
-  }
+  const CensusKernels& kernels = FDP_STEREO_SELECT(censusKernels);
+  std::fill(codes, codes + grey.cols, 0);
+  censusRowOf(grey, params, y,
+              [&](const std::uint8_t* bits, int count) { kernels.append(bits, grey.cols, count, codes); });
+}
+
+int censusBytes(const CensusParams& params) { return (params.window_width * params.window_height - 1 + 7) / 8; }
+
+void computeCensusBytes(const cv::Mat& grey, const CensusParams& params, int y, std::uint8_t* planes) {
+  censusRowOf(grey, params, y, [&](const std::uint8_t* bits, int) {
+    std::copy(bits, bits + grey.cols, planes);
+    planes += grey.cols;
+  });
 }
 
 void computeCensus(const cv::Mat& grey, const CensusParams& params, std::vector<std::uint64_t>& codes) {

@@ -66,8 +66,10 @@ struct MatchingCost::Source {
   int scales = 0;
   std::uint16_t bit_weights[3] = {};  // fixed-point w_i of eq. (7)
   int shift = 0;
-  Theta rho_theta{}, census_theta{};                                                    // 8-bit volumes
-  std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // 16-bit volumes
+  bool in_bytes = false;                                                                // one scale, 8-bit volume
+  Theta rho_theta{};                                                                    // in bytes
+  CensusTable census_costs{};                                                           // in bytes
+  std::vector<std::uint16_t> rho_table = std::vector<std::uint16_t>(kMaxRhoUnits + 1);  // otherwise
   std::vector<std::uint16_t> census_table = std::vector<std::uint16_t>(3 * 64 * kUnitsPerBit + 1);
 
   void load(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale);
@@ -100,9 +102,14 @@ void MatchingCost::Source::loadTheta(const MatchingCostParams& params, const Cos
   const double lambda = usesGradient(params.type) ? params.lambda_rho : params.lambda_ad;
   const double census_weight = usesCensus(params.type) ? 1.0 : 0.0;
   const double colour_weight = usesColour(params.type) ? (usesCensus(params.type) ? params.rho_weight : 1.0) : 0.0;
-  if (scale.depth == CostVolume::Depth::kU8) {
+  in_bytes = scale.depth == CostVolume::Depth::kU8 && scales <= 1;
+  if (in_bytes) {
     rho_theta = makeTheta(kUnitsPerGreyLevel, lambda, colour_weight, step, shift);
-    census_theta = makeTheta(kUnitsPerBit, params.lambda_census, census_weight, step, shift);
+    const auto room = std::lround(maxMatchingCost(params) / step) - std::lround(colour_weight / step);
+    for (std::size_t bits = 0; bits < census_costs.size(); ++bits) {
+      const double cost = census_weight * theta(static_cast<double>(bits), params.lambda_census) / step;
+      census_costs[bits] = static_cast<std::uint8_t>(std::min(std::lround(cost), room));
+    }
   } else {
     fillThetaTable(kUnitsPerGreyLevel, lambda, colour_weight, step, shift, rho_table);
     fillThetaTable(kUnitsPerBit, params.lambda_census, census_weight, step, shift, census_table);
@@ -146,7 +153,10 @@ using CostSource = MatchingCost::Source;
 /// i.
 template <typename T>
 void reverseRow(const T* row, int width, int min, int length, T* right) {
-  for (int t = 0; t < length; ++t) right[t] = row[std::clamp(width - 1 - min - t, 0, width - 1)];
+  const int first = std::clamp(-min, 0, length), end = std::clamp(width - min, first, length);  // inside the row
+  std::fill(right, right + first, row[width - 1]);
+  for (int t = first; t < end; ++t) right[t] = row[width - 1 - min - t];
+  std::fill(right + end, right + length, row[0]);
 }
 
 /// Buffers of one thread for one row.
@@ -155,7 +165,9 @@ struct RowScratch {
   std::vector<std::uint64_t> left_codes, right_codes;  // [scale]; right ones reversed
   std::vector<std::int16_t> planes;                    // of the right row, as they come
   std::vector<std::uint64_t> codes;
-  std::vector<std::uint16_t> rho, census;  // of one pixel
+  std::vector<std::uint8_t> left_bits, right_bits, bits;  // codes in bytes; right ones reversed
+  std::vector<std::uint8_t> rho_costs;                    // of one pixel
+  std::vector<std::uint16_t> rho, census, combined;       // of one pixel
 };
 
 void loadPlanes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
@@ -181,45 +193,98 @@ void loadCodes(const CostSource& source, int y, int width, int min, int length, 
   }
 }
 
+void loadBytes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  const int count = source.scales * censusBytes(source.census);
+  scratch.left_bits.resize(static_cast<std::size_t>(count) * width);
+  scratch.bits.resize(static_cast<std::size_t>(count) * width);
+  scratch.right_bits.resize(static_cast<std::size_t>(count) * length);
+  if (count == 0) return;
+  computeCensusBytes(source.left_blurred[0], source.census, y, scratch.left_bits.data());
+  computeCensusBytes(source.right_blurred[0], source.census, y, scratch.bits.data());
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    reverseRow(scratch.bits.data() + k * width, width, min, length, scratch.right_bits.data() + k * length);
+  }
+}
+
 void loadRow(const CostSource& source, int y, int width, const CostVolume& volume, RowScratch& scratch) {
   const int length = width + volume.stride();
   if (source.left.count() > 0) loadPlanes(source, y, width, volume.range().min, length, scratch);
-  loadCodes(source, y, width, volume.range().min, length, scratch);
+  (source.in_bytes ? loadBytes : loadCodes)(source, y, width, volume.range().min, length, scratch);
   scratch.rho.assign(volume.stride(), 0);
   scratch.census.assign(volume.stride(), 0);
+  scratch.combined.resize(volume.stride());
+  scratch.rho_costs.resize(volume.stride());
 }
 
-void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
-             std::uint8_t* costs) {
-  kernels.combineU8(scratch.rho.data(), source.rho_theta, scratch.census.data(), source.census_theta, count,
-                    source.shift, costs);
-}
 void combine(const MatchingCostKernels& kernels, const CostSource& source, const RowScratch& scratch, int count,
              std::uint16_t* costs) {
   kernels.combineU16(scratch.rho.data(), source.rho_table.data(), scratch.census.data(), source.census_table.data(),
                      count, source.shift, costs);
 }
+void combine(const MatchingCostKernels& kernels, const CostSource& source, RowScratch& scratch, int count,
+             std::uint8_t* costs) {
+  combine(kernels, source, scratch, count, scratch.combined.data());
+  std::transform(scratch.combined.begin(), scratch.combined.begin() + count, costs,
+                 [](std::uint16_t cost) { return static_cast<std::uint8_t>(cost); });
+}
+
+/// The planes of a pixel and of those it is compared with.
+struct PixelPlanes {
+  std::int16_t left[5] = {};
+  const std::int16_t* right;
+  int count, stride;
+};
+
+PixelPlanes planesAt(const CostSource& source, int x, int width, int stride, const RowScratch& scratch) {
+  PixelPlanes planes{{}, scratch.right.data() + width - 1 - x, source.left.count(), width + stride};
+  for (int c = 0; c < planes.count; ++c) planes.left[c] = scratch.left[static_cast<std::size_t>(c) * width + x];
+  return planes;
+}
+
+/// The costs of one pixel where they are made in bytes: from its planes and one scale of census bits.
+void byteCosts(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
+               int stride, std::uint8_t* costs) {
+  const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
+  const PixelPlanes planes = planesAt(source, x, width, stride, scratch);
+  std::uint8_t* const rho = scratch.rho_costs.data();
+  if (type == MatchingCostType::kBirchfieldTomasi) {
+    kernels.birchfieldTomasi(planes.left, planes.right, planes.stride, count, kMaxRhoUnits, scratch.rho.data());
+    kernels.thetaCosts(scratch.rho.data(), source.rho_theta, count, source.shift, rho);
+  } else if (planes.count > 0) {
+    kernels.differenceCosts(planes.left, planes.right, planes.count, planes.stride, source.rho_theta, count,
+                            source.shift, rho);
+  }
+  kernels.addCensusCosts(scratch.left_bits.data() + x, width, scratch.right_bits.data() + width - 1 - x, width + stride,
+                         source.scales * censusBytes(source.census), count, source.census_costs, rho, costs);
+}
+
+/// The costs of one pixel by tables.
+template <typename T>
+void tableCosts(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
+                int stride, T* costs) {
+  const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
+  const PixelPlanes planes = planesAt(source, x, width, stride, scratch);
+  const int length = width + stride;
+  if (type == MatchingCostType::kBirchfieldTomasi) {
+    kernels.birchfieldTomasi(planes.left, planes.right, length, count, kMaxRhoUnits, scratch.rho.data());
+  } else if (planes.count > 0) {
+    kernels.absoluteDifferences(planes.left, planes.right, planes.count, length, count, kMaxRhoUnits,
+                                scratch.rho.data());
+  }
+  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
+    kernels.hamming(scratch.left_codes[i * width + x], scratch.right_codes.data() + i * length + width - 1 - x, count,
+                    source.bit_weights[i], i == 0, scratch.census.data());
+  }
+  combine(kernels, source, scratch, count, costs);
+}
 
 template <typename T>
 void costsOfPixel(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
                   int stride, T* costs) {
-  const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
-  const int length = width + stride;
-  const int offset = width - 1 - x;
-  const int planes = source.left.count();
-  std::int16_t left[5] = {};
-  for (int c = 0; c < planes; ++c) left[c] = scratch.left[static_cast<std::size_t>(c) * width + x];
-  const std::int16_t* right = scratch.right.data() + offset;
-  if (type == MatchingCostType::kBirchfieldTomasi) {
-    kernels.birchfieldTomasi(left, right, length, count, kMaxRhoUnits, scratch.rho.data());
-  } else if (planes > 0) {
-    kernels.absoluteDifferences(left, right, planes, length, count, kMaxRhoUnits, scratch.rho.data());
+  if constexpr (sizeof(T) == 1) {
+    if (source.in_bytes) return byteCosts(source, type, x, width, scratch, count, stride, costs);
   }
-  for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
-    kernels.hamming(scratch.left_codes[i * width + x], scratch.right_codes.data() + i * length + offset, count,
-                    source.bit_weights[i], i == 0, scratch.census.data());
-  }
-  combine(kernels, source, scratch, count, costs);
+  tableCosts(source, type, x, width, scratch, count, stride, costs);
 }
 
 /// Repeats the nearest valid cost along d where x - d is outside the right image.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "parallel.hpp"
 
@@ -21,10 +23,17 @@ cv::Rect around(int x, int y, cv::Size size) {
   return cv::Rect(x - kRadiusPx, y - kRadiusPx, kSide, kSide) & cv::Rect(cv::Point(), size);
 }
 
-/// What the surface around a hole says of it; NaN where there is no such surface.
-float surfaceAt(const cv::Mat& disparity, int x, int y) {
-  const cv::Rect window = around(x, y, disparity.size());
-  const double needed = kMinShare * window.area();
+/// Known pixels of each column in the rows around y.
+void countColumns(const cv::Mat& disparity, int y, std::vector<int>& counts) {
+  counts.assign(disparity.cols, 0);
+  for (int v = std::max(0, y - kRadiusPx); v <= std::min(disparity.rows - 1, y + kRadiusPx); ++v) {
+    const auto* row = disparity.ptr<float>(v);
+    for (int x = 0; x < disparity.cols; ++x) counts[x] += row[x] == row[x] ? 1 : 0;
+  }
+}
+
+/// What the known pixels of the window say; NaN where they are no surface of so many pixels.
+float surfaceIn(const cv::Mat& disparity, cv::Rect window, double needed) {
   std::array<float, kSide * kSide> known{};
   int count = 0;
   for (int v = window.y; v < window.y + window.height; ++v) {
@@ -33,7 +42,9 @@ float surfaceAt(const cv::Mat& disparity, int x, int y) {
       if (!std::isnan(row[u])) known[count++] = row[u];
     }
   }
-  if (count < needed) return kInvalidDisparity;
+  const auto [least, most] = std::minmax_element(known.data(), known.data() + count);
+  if (*most - *least <= kReachPx)
+    return std::accumulate(known.data(), known.data() + count, 0.0F) / static_cast<float>(count);
   auto sorted = known;
   std::nth_element(sorted.data(), sorted.data() + count / 2, sorted.data() + count);
   const float median = sorted[count / 2];
@@ -53,11 +64,17 @@ cv::Mat closeHoles(cv::Mat& disparity) {
   const cv::Mat known = disparity.clone();
   cv::Mat closed = cv::Mat::zeros(disparity.size(), CV_8UC1);
   const auto last = static_cast<float>(disparity.cols - 1);
-  parallelFor(disparity.rows, [&](int y) {
+  const auto makeCounts = [] { return std::vector<int>(); };
+  parallelFor(disparity.rows, makeCounts, [&](int y, std::vector<int>& counts) {
+    countColumns(known, y, counts);
     const auto* before = known.ptr<float>(y);
     for (int x = 0; x < disparity.cols; ++x) {
       if (!std::isnan(before[x])) continue;
-      const float d = surfaceAt(known, x, y);
+      const cv::Rect window = around(x, y, disparity.size());
+      const double needed = kMinShare * window.area();
+      const auto* column = counts.data() + window.x;
+      if (std::accumulate(column, column + window.width, 0) < needed) continue;
+      const float d = surfaceIn(known, window, needed);
       const float match = static_cast<float>(x) - d;
       if (!(match >= 0.0F && match <= last)) continue;  // no surface, or the right view cannot see it
       disparity.ptr<float>(y)[x] = d;

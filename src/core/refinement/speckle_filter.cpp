@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/speckle_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -20,8 +21,17 @@ class Regions {
     }
   }
 
-  /// Pixels of the region that pixel x of row y belongs to.
-  int size(int y, int x) { return size_[rootOf(run_.at<int>(y, x))]; }
+  /// Calls drop(y, first, end) for each run of a region with fewer pixels.
+  template <typename Drop>
+  void visitSmaller(int least, Drop drop) {
+    for (int y = 0; y < run_.rows; ++y) {
+      const auto* run = run_.ptr<int>(y);
+      for (int first = 0, end = 0; first < run_.cols; first = end) {
+        while (end < run_.cols && run[end] == run[first]) ++end;
+        if (size_[rootOf(run[first])] < least) drop(y, first, end);
+      }
+    }
+  }
 
  private:
   bool alike(float a, float b) const { return std::abs(a - b) <= max_difference_; }
@@ -80,12 +90,9 @@ class Regions {
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
   if (params.max_size <= 0) return;
   Regions regions(disparity, static_cast<float>(params.max_difference_px));
-  for (int y = 0; y < disparity.rows; ++y) {
-    auto* d = disparity.ptr<float>(y);
-    for (int x = 0; x < disparity.cols; ++x) {
-      if (regions.size(y, x) < params.max_size) d[x] = kInvalidDisparity;
-    }
-  }
+  regions.visitSmaller(params.max_size, [&](int y, int first, int end) {
+    std::fill(disparity.ptr<float>(y) + first, disparity.ptr<float>(y) + end, kInvalidDisparity);
+  });
 }
 
 }  // namespace fdp_stereo

@@ -11,8 +11,8 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kPhases = 64;  // positions between two rows that have weights of their own
-constexpr int kBlockPx = 8;  // columns that share one offset: it changes by a few px over a whole image
+constexpr int kPhases = 64;   // positions between two rows that have weights of their own
+constexpr int kBlockPx = 16;  // columns that share one offset: it changes by a few px over a whole image
 constexpr int kReach = kResamplingTaps / 2;
 
 using Weights = std::array<std::int32_t, kResamplingTaps>;
@@ -41,9 +41,7 @@ std::array<Weights, kPhases> makeWeights() {
 }
 
 /// Row position in the given image that column x of aligned row y comes from, in units of 1 / kPhases px.
-int sourcePhase(const RowOffsetModel& model, int x, int y) {
-  return static_cast<int>(std::lround((y - model.offsetAt(x, y)) * kPhases));
-}
+int sourcePhase(const RowOffsetModel& model, int x, int y) { return cvRound((y - model.offsetAt(x, y)) * kPhases); }
 
 template <typename T>
 using Combine = void (*)(const T* const*, const std::int32_t*, int, T*);

@@ -29,6 +29,7 @@ constexpr float kMaxSlope = 1.0F;  // px / px
 constexpr float kFirstFitScalePx = 4.0F;
 constexpr float kLastFitScalePx = 0.5F;
 constexpr int kFitRounds = 6;
+constexpr double kSettled = 0.01;      // px, and px per px, that a round still changes
 constexpr double kLevelWeight = 0.5F;  // of a level plane, where the neighbours say little
 
 /// Cost of the step from each pixel to its right (dx = 1) or lower (dy = 1) neighbour.
@@ -154,7 +155,11 @@ SeedPlane fitPlane(const Seeds& seeds, int index, const Neighbours& neighbours) 
     Eigen::Matrix3d normal;
     normal << 1.0 + weight.sum(), sum_x, sum_y,  // 1: the seed itself
         sum_x, kLevelWeight + (wx * x).sum(), sum_xy, sum_y, sum_xy, kLevelWeight + (wy * y).sum();
-    plane = normal.inverse() * Eigen::Vector3d((weight * d).sum(), (wx * d).sum(), (wy * d).sum());
+    const Eigen::Vector3d better =
+        normal.inverse() * Eigen::Vector3d((weight * d).sum(), (wx * d).sum(), (wy * d).sum());
+    const bool settled = round > 1 && (better - plane).cwiseAbs().maxCoeff() < kSettled;
+    plane = better;
+    if (settled) break;
     scale = std::max(kLastFitScalePx, scale / 2.0F);
   }
   SeedPlane result;
@@ -198,9 +203,10 @@ cv::Mat sharesOf(const GeodesicMap& map, double strength) {
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < shares.rows; ++y) {
     const auto* distance = map.distance.ptr<float>(y);
+    auto* share = shares.ptr<uchar>(y);
     for (int x = 0; x < shares.cols; ++x) {
       const double weight = distance[x] < kFarthest ? std::exp(-distance[x]) : 0.0;
-      shares.at<uchar>(y, x) = static_cast<uchar>(std::lround(255.0 * strength * weight));
+      share[x] = static_cast<uchar>(cvRound(255.0 * strength * weight));
     }
   }
   return shares;

@@ -129,20 +129,127 @@ void hamming(std::uint64_t left, const std::uint64_t* __restrict right, int coun
 
 #endif
 
-inline U16s thetaOf(const std::uint16_t* costs, const Theta& theta) {
-  U16s v;
-  __builtin_memcpy(&v, costs, sizeof(v));
-  return productHigh(kDecayOne - decayOf(v, theta.decay), U16s{} + theta.weight);
+#if defined(__AVX2__)
+constexpr int kByteLanes = 32;
+#else
+constexpr int kByteLanes = 16;
+#endif
+constexpr int kLeastBytes = 16;  // what rows are padded to
+typedef std::uint8_t Bytes __attribute__((vector_size(kByteLanes)));
+
+/// Set bits of each byte.
+inline Bytes setBits(const Bytes& x) {
+#if defined(__AVX512BITALG__)
+  return reinterpret_cast<Bytes>(_mm256_popcnt_epi8(reinterpret_cast<__m256i>(x)));
+#elif defined(__ARM_NEON)
+  return vcntq_u8(x);
+#else
+  const Bytes pairs = x - ((x >> 1) & 0x55);
+  const Bytes nibbles = (pairs & 0x33) + ((pairs >> 2) & 0x33);
+  return (nibbles + (nibbles >> 4)) & 0x0f;
+#endif
 }
 
-void combineU8(const std::uint16_t* a, const Theta& theta_a, const std::uint16_t* b, const Theta& theta_b, int count,
-               int shift, std::uint8_t* costs) {
-  const Theta of_a = theta_a, of_b = theta_b;  // copies that the bytes stored cannot change
+/// table[index], index < 64.
+inline Bytes lookUp(const CensusTable& table, const Bytes& index) {
+#if defined(__AVX512VBMI__)
+  const auto* halves = reinterpret_cast<const __m256i*>(table.data());
+  return reinterpret_cast<Bytes>(_mm256_permutex2var_epi8(_mm256_loadu_si256(halves), reinterpret_cast<__m256i>(index),
+                                                          _mm256_loadu_si256(halves + 1)));
+#elif defined(__AVX2__)
+  const auto at = reinterpret_cast<__m256i>(index);
+  const auto quarter = [&](int k) {
+    const __m128i values = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table.data()) + k);
+    return _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(values), at);
+  };
+  const __m256i bit4 = _mm256_slli_epi16(at, 3), bit5 = _mm256_slli_epi16(at, 2);  // in the bytes' highest bits
+  return reinterpret_cast<Bytes>(_mm256_blendv_epi8(_mm256_blendv_epi8(quarter(0), quarter(1), bit4),
+                                                    _mm256_blendv_epi8(quarter(2), quarter(3), bit4), bit5));
+#elif defined(__ARM_NEON) && defined(__aarch64__)
+  return vqtbl4q_u8(vld1q_u8_x4(table.data()), index);
+#else
+  Bytes values;
+  for (int i = 0; i < kByteLanes; ++i) values[i] = table[index[i]];
+  return values;
+#endif
+}
+
+template <typename SumAt>
+inline void thetaCostsOf(SumAt sumAt, const Theta& theta, int count, int shift, std::uint8_t* costs) {
+  const Theta wanted = theta;  // a copy that the bytes stored cannot change
   const auto half = static_cast<std::uint16_t>((1U << shift) >> 1);
   for (int i = 0; i < count; i += kShortLanes) {
-    const U16s sum = thetaOf(a + i, of_a) + thetaOf(b + i, of_b) + half;
-    const U8s rounded = __builtin_convertvector(sum >> static_cast<std::uint16_t>(shift), U8s);
-    __builtin_memcpy(costs + i, &rounded, sizeof(rounded));
+    const U16s decay = decayOf(sumAt(i), wanted.decay);
+    const U16s value = productHigh(kDecayOne - decay, U16s{} + wanted.weight) + half;
+    const U8s cost = __builtin_convertvector(value >> static_cast<std::uint16_t>(shift), U8s);
+    __builtin_memcpy(costs + i, &cost, sizeof(cost));
+  }
+}
+
+void thetaCosts(const std::uint16_t* sums, const Theta& theta, int count, int shift, std::uint8_t* costs) {
+  const auto sumAt = [&](int i) {
+    U16s sum;
+    __builtin_memcpy(&sum, sums + i, sizeof(sum));
+    return sum;
+  };
+  thetaCostsOf(sumAt, theta, count, shift, costs);
+}
+
+template <int kPlanes>
+void differenceCostsOf(const std::int16_t* left, const std::int16_t* right, int plane_stride, const Theta& theta,
+                       int count, int shift, std::uint8_t* costs) {
+  I16s of_left[kPlanes];
+  for (int c = 0; c < kPlanes; ++c) of_left[c] = I16s{} + left[c];
+  const auto sumAt = [&](int i) {
+    U16s sum{};
+    for (int c = 0; c < kPlanes; ++c) {
+      I16s b;
+      __builtin_memcpy(&b, right + c * plane_stride + i, sizeof(b));
+      const I16s difference = of_left[c] - b;
+      sum += reinterpret_cast<U16s>(difference > -difference ? difference : -difference);
+    }
+    return sum;
+  };
+  thetaCostsOf(sumAt, theta, count, shift, costs);
+}
+
+void differenceCosts(const std::int16_t* left, const std::int16_t* right, int planes, int plane_stride,
+                     const Theta& theta, int count, int shift, std::uint8_t* costs) {
+  switch (planes) {
+    case 1:
+      return differenceCostsOf<1>(left, right, plane_stride, theta, count, shift, costs);
+    case 2:
+      return differenceCostsOf<2>(left, right, plane_stride, theta, count, shift, costs);
+    case 3:
+      return differenceCostsOf<3>(left, right, plane_stride, theta, count, shift, costs);
+    default:
+      return differenceCostsOf<5>(left, right, plane_stride, theta, count, shift, costs);
+  }
+}
+
+template <int kLanes>
+inline void addCensusCostsAt(const std::uint8_t* left, int left_stride, const std::uint8_t* right, int right_stride,
+                             int planes, const CensusTable& table, const std::uint8_t* others, std::uint8_t* costs) {
+  Bytes distance{}, cost{};
+  for (int k = 0; k < planes; ++k) {
+    Bytes code{};
+    __builtin_memcpy(&code, right + k * right_stride, kLanes);
+    distance += setBits(code ^ left[k * left_stride]);
+  }
+  __builtin_memcpy(&cost, others, kLanes);
+  cost += lookUp(table, distance < 63 ? distance : Bytes{} + 63);
+  __builtin_memcpy(costs, &cost, kLanes);
+}
+
+void addCensusCosts(const std::uint8_t* left, int left_stride, const std::uint8_t* right, int right_stride, int planes,
+                    int count, const CensusTable& table, const std::uint8_t* others, std::uint8_t* costs) {
+  const int padded = (count + kLeastBytes - 1) / kLeastBytes * kLeastBytes;
+  if (padded < kByteLanes) {
+    return addCensusCostsAt<kLeastBytes>(left, left_stride, right, right_stride, planes, table, others, costs);
+  }
+  for (int i = 0; i < padded; i += kByteLanes) {
+    const int at = i + kByteLanes <= padded ? i : padded - kByteLanes;  // the last ones may be computed twice
+    addCensusCostsAt<kByteLanes>(left, left_stride, right + at, right_stride, planes, table, others + at, costs + at);
   }
 }
 
@@ -158,7 +265,8 @@ void combineU16(const std::uint16_t* __restrict a, const std::uint16_t* __restri
 }  // namespace
 
 const MatchingCostKernels& matchingCostKernels() {
-  static const MatchingCostKernels kernels = {absoluteDifferences, birchfieldTomasi, hamming, combineU8, combineU16};
+  static const MatchingCostKernels kernels = {absoluteDifferences, birchfieldTomasi, hamming,   thetaCosts,
+                                              differenceCosts,     addCensusCosts,   combineU16};
   return kernels;
 }
 
