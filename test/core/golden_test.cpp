@@ -99,7 +99,7 @@ std::map<std::string, std::string> readGolden() {
   return golden;
 }
 
-const char* const kPresets[] = {"fast", "accurate", "paper"};
+const char* const kPresets[] = {"fast", "light", "accurate", "paper"};
 using Golden = reference::EveryInstructionSet;
 FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(Golden);
 

@@ -274,7 +274,8 @@ TEST(Yaml, SurvivesHostileInput) {
 TEST(Preset, FastIsTheDefault) { EXPECT_EQ(toYaml(loadPreset("fast")), toYaml(PipelineParams{})); }
 
 TEST(Preset, FilesListOnlyWhatDiffersFromTheDefaults) {
-  for (const char* file : {"config/fast", "config/accurate", "config/paper", "benchmark/localexp_reference"}) {
+  for (const char* file :
+       {"config/fast", "config/light", "config/accurate", "config/paper", "benchmark/localexp_reference"}) {
     PipelineParams defaults;
     const std::vector<ParamRef> refs = paramList(defaults);
     for (const NamedText& line : readYamlFile(FDP_STEREO_SOURCE_DIR "/" + std::string(file) + ".yaml")) {

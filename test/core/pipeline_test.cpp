@@ -252,7 +252,7 @@ double answered(const PipelineResult& result) {
 }
 
 TEST(Pipeline, SaysNothingWhereNothingIsSeen) {
-  for (const char* preset : {"fast", "accurate", "paper"}) {
+  for (const char* preset : {"fast", "light", "accurate", "paper"}) {
     for (const auto& [left, right] : {std::pair{0, 0}, {128, 128}, {255, 255}, {0, 255}}) {
       PipelineParams params = loadPreset(preset);
       params.search = {5, 16};

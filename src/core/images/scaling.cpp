@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 #include "images/colour.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -80,6 +82,62 @@ struct Source {
     }
     return total > 0.0F ? sum / total : surface;
   }
+
+  /// Disparity at (x, y) beside an edge or a hole; NaN where the nearest pixel has none.
+  float beside(float x, float y, const std::uint8_t* colour) const {
+    const float on = surface(x, y, colour);
+    return std::isnan(on) ? on : interpolate(x, y, on);
+  }
+};
+
+/// One row of the full image: most of its pixels lie between four that are on one surface.
+class RowGrower {
+ public:
+  RowGrower(const Source& source, int width, double ratio) : source_(source), x_(width), left_(width), share_(width) {
+    const int last = std::max(source.disparity.cols - 2, 0);
+    for (int x = 0; x < width; ++x) {
+      x_[x] = moved(static_cast<float>(x), ratio);
+      left_[x] = std::clamp(static_cast<int>(std::floor(x_[x])), 0, last);
+      share_[x] = std::clamp(x_[x] - static_cast<float>(left_[x]), 0.0F, 1.0F);
+    }
+    between_.resize(source.disparity.cols);
+    smooth_.resize(source.disparity.cols);
+  }
+
+  void grow(int y, float small_y, float* full) {
+    mix(small_y);
+    const int channels = source_.left_full.channels();
+    const auto* colours = source_.left_full.ptr<std::uint8_t>(y);
+    for (std::size_t x = 0; x < x_.size(); ++x) {
+      const int left = left_[x];
+      full[x] = smooth_[left] != 0 ? between_[left] + share_[x] * (between_[left + 1] - between_[left])
+                                   : source_.beside(x_[x], small_y, colours + x * channels);
+    }
+  }
+
+ private:
+  /// The row at small_y, and where it lies on one surface with its neighbours.
+  void mix(float small_y) {
+    const int rows = source_.disparity.rows, width = source_.disparity.cols;
+    const int top = std::clamp(static_cast<int>(std::floor(small_y)), 0, std::max(rows - 2, 0));
+    const float share = std::clamp(small_y - static_cast<float>(top), 0.0F, 1.0F);
+    const auto* above = source_.disparity.ptr<float>(top);
+    const auto* below = source_.disparity.ptr<float>(std::min(top + 1, rows - 1));
+    for (int x = 0; x < width; ++x) between_[x] = above[x] + share * (below[x] - above[x]);
+    smooth_[width - 1] = 0;
+    for (int x = 0; x + 1 < width; ++x) {
+      const float least = std::min(std::min(above[x], above[x + 1]), std::min(below[x], below[x + 1]));
+      const float most = std::max(std::max(above[x], above[x + 1]), std::max(below[x], below[x + 1]));
+      const float sum = above[x] + above[x + 1] + below[x] + below[x + 1];  // NaN where one of them is
+      smooth_[x] = most - least <= kSameSurfacePx && sum == sum ? 1 : 0;
+    }
+  }
+
+  const Source& source_;
+  std::vector<float> x_;
+  std::vector<int> left_;
+  std::vector<float> share_, between_;
+  std::vector<std::uint8_t> smooth_;
 };
 
 }  // namespace
@@ -137,17 +195,15 @@ cv::Mat Scaling::grow(const cv::Mat& disparity, const cv::Mat& left_small, const
   const Source source{disparity, left_small, left_full};
   const auto min = static_cast<float>(range.min), max = static_cast<float>(range.max());
   cv::Mat full(full_, CV_32FC1);
-#pragma omp parallel for schedule(static)
-  for (int y = 0; y < full.rows; ++y) {
-    const float small_y = moved(static_cast<float>(y), y_);
+  const auto factor = static_cast<float>(1.0 / x_);
+  const auto makeGrower = [&] { return RowGrower(source, full.cols, x_); };
+  parallelFor(full.rows, makeGrower, [&](int y, RowGrower& grower) {
+    auto* row = full.ptr<float>(y);
+    grower.grow(y, moved(static_cast<float>(y), y_), row);
     for (int x = 0; x < full.cols; ++x) {
-      const float small_x = moved(static_cast<float>(x), x_);
-      const auto* colour = left_full.ptr<std::uint8_t>(y) + x * left_full.channels();
-      const float surface = source.surface(small_x, small_y, colour);
-      const float d = std::isnan(surface) ? surface : source.interpolate(small_x, small_y, surface);
-      full.ptr<float>(y)[x] = std::isnan(d) ? kInvalidDisparity : std::clamp(static_cast<float>(d / x_), min, max);
+      if (!std::isnan(row[x])) row[x] = std::clamp(row[x] * factor, min, max);
     }
-  }
+  });
   return full;
 }
 
