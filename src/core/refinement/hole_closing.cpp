@@ -28,7 +28,8 @@ void countColumns(const cv::Mat& disparity, int y, std::vector<int>& counts) {
   counts.assign(disparity.cols, 0);
   for (int v = std::max(0, y - kRadiusPx); v <= std::min(disparity.rows - 1, y + kRadiusPx); ++v) {
     const auto* row = disparity.ptr<float>(v);
-    for (int x = 0; x < disparity.cols; ++x) counts[x] += row[x] == row[x] ? 1 : 0;
+    std::transform(row, row + disparity.cols, counts.begin(), counts.begin(),
+                   [](float d, int count) { return count + (d == d ? 1 : 0); });
   }
 }
 

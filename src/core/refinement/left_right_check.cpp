@@ -17,20 +17,6 @@ namespace {
 /// answers on weak texture.
 constexpr double kMinShare = 0.42;
 
-/// The left disparity where one of the two right pixels beside its match agrees, NaN elsewhere.
-void keepAgreeing(const float* left, const float* right, int width, float max_difference, float* agreeing) {
-  for (int x = 0; x < width; ++x) {
-    agreeing[x] = kInvalidDisparity;
-    const float match = static_cast<float>(x) - left[x];
-    if (!(match >= 0.0F && match <= static_cast<float>(width - 1))) continue;
-    const auto before = static_cast<int>(match);
-    const int after = static_cast<float>(before) < match ? before + 1 : before;
-    const bool agrees =
-        std::abs(left[x] - right[before]) <= max_difference || std::abs(left[x] - right[after]) <= max_difference;
-    if (agrees) agreeing[x] = left[x];
-  }
-}
-
 /// Pixels of the window around p in an image of `size` pixels, along one axis.
 int pixelsAround(int p, int size) { return std::min(p + kVoteRadiusPx, size - 1) - std::max(p - kVoteRadiusPx, 0) + 1; }
 
@@ -46,12 +32,12 @@ class RowVotes {
 
   void write(int y, float* kept) {
     std::array<const float*, kVoteSide> rows{};
-    std::array<const std::int32_t*, kVoteSide> counts{};
+    std::array<const std::uint8_t*, kVoteSide> counts{};
     for (int k = 0; k < kVoteSide; ++k) {
       const int v = y + k - kVoteRadiusPx;
       const bool inside = v >= 0 && v < disparity_.rows;
       rows[k] = inside ? disparity_.ptr<float>(v) : nothing_.data();
-      counts[k] = counts_.ptr<std::int32_t>(inside ? v : y);
+      counts[k] = counts_.ptr<std::uint8_t>(inside ? v : y);
     }
     const auto* own = disparity_.ptr<float>(y);
     FDP_STEREO_SELECT(leftRightCheckKernels)
@@ -71,14 +57,14 @@ class RowVotes {
 };
 
 void keepSupported(cv::Mat& disparity, const cv::Mat& right, float max_difference) {
+  const LeftRightCheckKernels& kernels = FDP_STEREO_SELECT(leftRightCheckKernels);
   const int width = disparity.cols;
-  cv::Mat counts(disparity.size(), CV_32SC1), kept(disparity.size(), CV_32FC1);
+  cv::Mat counts(disparity.size(), CV_8UC1), kept(disparity.size(), CV_32FC1);
   const auto makeRow = [&] { return std::vector<float>(width + 2 * kVoteRadiusPx, kInvalidDisparity); };
   parallelFor(disparity.rows, makeRow, [&](int y, std::vector<float>& agreeing) {
     const auto* left = disparity.ptr<float>(y);
-    keepAgreeing(left, right.ptr<float>(y), width, max_difference, agreeing.data() + kVoteRadiusPx);
-    FDP_STEREO_SELECT(leftRightCheckKernels)
-        .countAlongRow(left, agreeing.data(), width, max_difference, counts.ptr<std::int32_t>(y));
+    kernels.keepAgreeing(left, right.ptr<float>(y), width, max_difference, agreeing.data() + kVoteRadiusPx);
+    kernels.countAlongRow(left, agreeing.data(), width, max_difference, counts.ptr<std::uint8_t>(y));
   });
   const auto makeVotes = [&] { return RowVotes(disparity, counts, max_difference); };
   parallelFor(disparity.rows, makeVotes, [&](int y, RowVotes& votes) { votes.write(y, kept.ptr<float>(y)); });
@@ -93,7 +79,8 @@ void checkLeftRight(cv::Mat& disparity_left, const cv::Mat& disparity_right, con
   const auto makeRow = [&] { return std::vector<float>(disparity_left.cols); };
   parallelFor(disparity_left.rows, makeRow, [&](int y, std::vector<float>& agreeing) {
     auto* left = disparity_left.ptr<float>(y);
-    keepAgreeing(left, disparity_right.ptr<float>(y), disparity_left.cols, max_difference, agreeing.data());
+    FDP_STEREO_SELECT(leftRightCheckKernels)
+        .keepAgreeing(left, disparity_right.ptr<float>(y), disparity_left.cols, max_difference, agreeing.data());
     std::copy(agreeing.begin(), agreeing.end(), left);
   });
 }

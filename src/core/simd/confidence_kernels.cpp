@@ -103,14 +103,22 @@ void fillDistances(const ConfidenceSumRow& row, int width) {
     for (int x = 0; x < width; ++x) distance[x] = 0.0F;
     return;
   }
+  std::int32_t matches[kConfidenceBlock];
+  for (int start = 0; start < width; start += kConfidenceBlock) {
+    const int count = width - start < kConfidenceBlock ? width - start : kConfidenceBlock;
 #pragma omp simd
-  for (int x = 0; x < width; ++x) {
-    const float d = disparity[x];
-    const auto match = static_cast<std::int32_t>(d == d ? static_cast<float>(x) - d + 0.5F : 0.0F);
-    const std::int32_t inside = match < 0 ? 0 : (match > last ? last : match);
-    const float other = right[inside];
-    const float e = d < other ? other - d : d - other;
-    distance[x] = (e < kLargestPx ? e : kLargestPx) * (1.0F / kLargestPx);
+    for (int i = 0; i < count; ++i) {
+      const float d = disparity[start + i];
+      const auto match = static_cast<std::int32_t>(d == d ? static_cast<float>(start + i) - d + 0.5F : 0.0F);
+      matches[i] = match < 0 ? 0 : (match > last ? last : match);
+    }
+    for (int i = 0; i < count; ++i) distance[start + i] = right[matches[i]];
+#pragma omp simd
+    for (int i = 0; i < count; ++i) {
+      const float d = disparity[start + i], other = distance[start + i];
+      const float e = d < other ? other - d : d - other;
+      distance[start + i] = (e < kLargestPx ? e : kLargestPx) * (1.0F / kLargestPx);
+    }
   }
 }
 
