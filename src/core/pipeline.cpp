@@ -110,6 +110,18 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
 
 constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
 
+/// The edge of a black frame is none of the scene: without it, the picture goes on to the border.
+void extendPair(const cv::Mat& blind_left, StereoPair& pair) {
+  const auto extend = [](const cv::Mat& blind, cv::Mat& image, cv::Mat& grey) {
+    const cv::Mat black = blackFrame(grey, blind);
+    const bool shared = image.data == grey.data;
+    image = extendUnder(black, image);
+    grey = shared ? image : extendUnder(black, grey);
+  };
+  extend(blind_left, pair.left, pair.left_grey);
+  extend(blindPixels(pair.right_grey), pair.right, pair.right_grey);
+}
+
 /// Filters the speckles of what is seen, and keeps of the rest what that explains.
 void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::Mat& disparity) {
   const cv::Mat guessed = disparity.clone();
@@ -184,6 +196,8 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const Scaling scaling(given.left.size(), params_.scale);
   Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}};
   checkMemory(params_, frame.pair.left.size(), frame.search);
+  frame.blind = blindPixels(frame.pair.left_grey);
+  extendPair(frame.blind, frame.pair);
   clock.done("image_preparation");
 
   FeatureMatching features = matchFeatures(frame.pair, frame.search, params_.feature_matching);
@@ -232,7 +246,6 @@ void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& r
   result.rejected_seeds = std::move(sparse.rejected);
   cv::Mat buffer;
   frame.guide = eightBitGrey(frame.pair.left, frame.pair.left_grey, buffer);
-  frame.blind = blindPixels(frame.pair.left_grey);
   for (const Seed& seed : result.seeds) {  // another sensor sees where the cameras do not
     if (seed.source == SeedSource::kFeature) continue;
     cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);

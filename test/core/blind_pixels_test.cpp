@@ -27,6 +27,36 @@ TEST(BlindPixels, AreFlatWindowsOf8And16Bit) {
   }
 }
 
+TEST(BlackFrame, IsWhatTheBorderReachesThroughBlack) {
+  cv::Mat image(40, 60, CV_8UC1, cv::Scalar(90));
+  image.colRange(0, 8).setTo(0);              // of the frame
+  image(cv::Rect(30, 10, 6, 6)).setTo(0);     // black, but inside the picture
+  image(cv::Rect(50, 0, 10, 10)).setTo(255);  // at the border, but not black
+  const cv::Mat blind(image.size(), CV_8UC1, cv::Scalar(255));
+  cv::Mat expected = cv::Mat::zeros(image.size(), CV_8UC1);
+  expected.colRange(0, 8).setTo(255);
+  EXPECT_EQ(cv::countNonZero(blackFrame(image, blind) != expected), 0);
+  EXPECT_TRUE(blackFrame(image, cv::Mat::zeros(image.size(), CV_8UC1)).empty()) << "dark, but seen";
+}
+
+TEST(BlackFrame, ThePictureGoesOnUnderIt) {
+  cv::Mat image = (cv::Mat_<cv::Vec3b>(3, 5) << cv::Vec3b(), cv::Vec3b(), cv::Vec3b(), cv::Vec3b(), cv::Vec3b(),  //
+                   cv::Vec3b(), cv::Vec3b(), cv::Vec3b(1, 2, 3), cv::Vec3b(4, 5, 6), cv::Vec3b(),                 //
+                   cv::Vec3b(7, 7, 7), cv::Vec3b(), cv::Vec3b(), cv::Vec3b(), cv::Vec3b(8, 8, 8));
+  const cv::Mat mask = (cv::Mat_<std::uint8_t>(3, 5) << 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0);
+  const cv::Mat extended = extendUnder(mask, image);
+  const auto row = [&](int y) {
+    std::vector<int> firsts;
+    for (int x = 0; x < 5; ++x) firsts.push_back(extended.at<cv::Vec3b>(y, x)[0]);
+    return firsts;
+  };
+  EXPECT_EQ(row(0), (std::vector<int>{1, 1, 1, 4, 4})) << "as the nearest row";
+  EXPECT_EQ(row(1), (std::vector<int>{1, 1, 1, 4, 4}));
+  EXPECT_EQ(row(2), (std::vector<int>{7, 7, 7, 8, 8}));
+  EXPECT_EQ(image.at<cv::Vec3b>(0, 0)[0], 0) << "the image itself is not touched";
+  EXPECT_EQ(extendUnder(cv::Mat(), image).data, image.data);
+}
+
 /// NaN = none.
 std::vector<float> explained(const std::vector<float>& row, const std::vector<std::uint8_t>& blind) {
   cv::Mat disparity = cv::Mat(row, true).reshape(1, 1);

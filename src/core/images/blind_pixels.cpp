@@ -23,7 +23,60 @@ cv::Mat flatWindows(const cv::Mat& grey, int side, double difference) {
   return flat;
 }
 
+/// Marks what is reached from (x, y) by steps of (dx, dy) through black.
+void markRay(const cv::Mat& black, int x, int y, int dx, int dy, cv::Mat& reached) {
+  for (; x >= 0 && y >= 0 && x < black.cols && y < black.rows && black.at<std::uint8_t>(y, x) != 0; x += dx, y += dy) {
+    reached.at<std::uint8_t>(y, x) = 255;
+  }
+}
+
+/// Each masked pixel becomes the nearest one of the row that is not; false where there is none.
+bool extendRow(const std::uint8_t* masked, std::size_t bytes, int width, std::uint8_t* row) {
+  std::vector<int> source(width);
+  for (int x = 0, before = -1; x < width; ++x) source[x] = before = masked[x] == 0 ? x : before;
+  for (int x = width - 1, after = -1; x >= 0; --x) {
+    if (masked[x] == 0) after = x;
+    if (source[x] < 0 || (after >= 0 && after - x < x - source[x])) source[x] = after;
+  }
+  if (source[0] < 0) return false;
+  for (int x = 0; x < width; ++x) {
+    if (source[x] != x) std::copy_n(row + source[x] * bytes, bytes, row + x * bytes);
+  }
+  return true;
+}
+
 }  // namespace
+
+cv::Mat blackFrame(const cv::Mat& grey, const cv::Mat& blind) {
+  constexpr int kBlack = 1;             // grey levels at most: the compression of an image leaves no more
+  constexpr double kLeastShare = 1e-3;  // of the image
+  cv::Mat reached = cv::Mat::zeros(grey.size(), CV_8UC1);
+  const cv::Mat black = (grey <= kBlack) & blind;
+  for (int y = 0; y < grey.rows; ++y) {
+    markRay(black, 0, y, 1, 0, reached);
+    markRay(black, grey.cols - 1, y, -1, 0, reached);
+  }
+  for (int x = 0; x < grey.cols; ++x) {
+    markRay(black, x, 0, 0, 1, reached);
+    markRay(black, x, grey.rows - 1, 0, -1, reached);
+  }
+  return cv::countNonZero(reached) < kLeastShare * static_cast<double>(grey.total()) ? cv::Mat() : reached;
+}
+
+cv::Mat extendUnder(const cv::Mat& mask, const cv::Mat& image) {
+  if (mask.empty()) return image;
+  cv::Mat extended = image.clone();
+  int last = -1;  // row with pixels of its own
+  for (int y = 0; y < image.rows; ++y) {
+    if (!extendRow(mask.ptr<std::uint8_t>(y), image.elemSize(), image.cols, extended.ptr<std::uint8_t>(y))) continue;
+    for (int empty = last + 1; empty < y; ++empty) {
+      extended.row(last < 0 || 2 * empty > last + y ? y : last).copyTo(extended.row(empty));
+    }
+    last = y;
+  }
+  for (int empty = last + 1; last >= 0 && empty < image.rows; ++empty) extended.row(last).copyTo(extended.row(empty));
+  return extended;
+}
 
 cv::Mat blindPixels(const cv::Mat& grey) { return flatWindows(grey, 5, 0.0) | flatWindows(grey, 15, 1.0); }
 

@@ -11,6 +11,14 @@ namespace fdp_stereo {
 /// the noise of a sensor is more than that. CV_8UC1.
 cv::Mat blindPixels(const cv::Mat& grey);
 
+/// The black frame that rectification leaves: 255 where a blind pixel can be reached from the border of the image along
+/// its row or column through black ones alone. Empty where there is next to none. CV_8UC1.
+cv::Mat blackFrame(const cv::Mat& grey, const cv::Mat& blind);
+
+/// Goes on with the picture under a mask: its pixels become the nearest ones of their row without mask, rows without
+/// such the nearest row with one. A new image; `image` itself where the mask is empty.
+cv::Mat extendUnder(const cv::Mat& mask, const cv::Mat& image);
+
 /// Keeps the disparity (CV_32FC1) of blind pixels only where the seen ones beside them in their row explain it: it must
 /// lie between the nearest known disparities to the left and to the right. A guess: its confidence is 0 all the same.
 void dropUnexplained(const cv::Mat& blind, cv::Mat& disparity);
