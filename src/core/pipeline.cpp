@@ -111,15 +111,15 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
 constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
 
 /// The edge of a black frame is none of the scene: without it, the picture goes on to the border.
-void extendPair(const cv::Mat& blind_left, StereoPair& pair) {
-  const auto extend = [](const cv::Mat& blind, cv::Mat& image, cv::Mat& grey) {
-    const cv::Mat black = blackFrame(grey, blind);
+void extendPair(StereoPair& pair) {
+  const auto extend = [](cv::Mat& image, cv::Mat& grey) {
+    const cv::Mat frame = blackFrame(grey);
     const bool shared = image.data == grey.data;
-    image = extendUnder(black, image);
-    grey = shared ? image : extendUnder(black, grey);
+    image = extendUnder(frame, image);
+    grey = shared ? image : extendUnder(frame, grey);
   };
-  extend(blind_left, pair.left, pair.left_grey);
-  extend(blindPixels(pair.right_grey), pair.right, pair.right_grey);
+  extend(pair.left, pair.left_grey);
+  extend(pair.right, pair.right_grey);
 }
 
 /// Filters the speckles of what is seen, and keeps of the rest what that explains.
@@ -197,7 +197,7 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}};
   checkMemory(params_, frame.pair.left.size(), frame.search);
   frame.blind = blindPixels(frame.pair.left_grey);
-  extendPair(frame.blind, frame.pair);
+  extendPair(frame.pair);
   clock.done("image_preparation");
 
   FeatureMatching features = matchFeatures(frame.pair, frame.search, params_.feature_matching);

@@ -47,11 +47,20 @@ bool extendRow(const std::uint8_t* masked, std::size_t bytes, int width, std::ui
 
 }  // namespace
 
-cv::Mat blackFrame(const cv::Mat& grey, const cv::Mat& blind) {
+cv::Mat blindPixels(const cv::Mat& grey) { return flatWindows(grey, 5, 0.0) | flatWindows(grey, 15, 1.0); }
+
+cv::Mat blackFrame(const cv::Mat& grey) {
   constexpr int kBlack = 1;             // grey levels at most: the compression of an image leaves no more
   constexpr double kLeastShare = 1e-3;  // of the image
+  const cv::Rect all(cv::Point(), grey.size());
+  cv::Mat black = grey <= kBlack;
+  const auto touches = [&](const cv::Rect& side) { return cv::countNonZero(black(side & all)) > 0; };
+  if (!touches({0, 0, 1, grey.rows}) && !touches({grey.cols - 1, 0, 1, grey.rows}) && !touches({0, 0, grey.cols, 1}) &&
+      !touches({0, grey.rows - 1, grey.cols, 1})) {
+    return {};
+  }
+  black &= blindPixels(grey);
   cv::Mat reached = cv::Mat::zeros(grey.size(), CV_8UC1);
-  const cv::Mat black = (grey <= kBlack) & blind;
   for (int y = 0; y < grey.rows; ++y) {
     markRay(black, 0, y, 1, 0, reached);
     markRay(black, grey.cols - 1, y, -1, 0, reached);
@@ -77,8 +86,6 @@ cv::Mat extendUnder(const cv::Mat& mask, const cv::Mat& image) {
   for (int empty = last + 1; last >= 0 && empty < image.rows; ++empty) extended.row(last).copyTo(extended.row(empty));
   return extended;
 }
-
-cv::Mat blindPixels(const cv::Mat& grey) { return flatWindows(grey, 5, 0.0) | flatWindows(grey, 15, 1.0); }
 
 void dropUnexplained(const cv::Mat& blind, cv::Mat& disparity) {
   constexpr float kTolerancePx = 1.0F;

@@ -13,7 +13,7 @@ cv::Mat blindPixels(const cv::Mat& grey);
 
 /// The black frame that rectification leaves: 255 where a blind pixel can be reached from the border of the image along
 /// its row or column through black ones alone. Empty where there is next to none. CV_8UC1.
-cv::Mat blackFrame(const cv::Mat& grey, const cv::Mat& blind);
+cv::Mat blackFrame(const cv::Mat& grey);
 
 /// Goes on with the picture under a mask: its pixels become the nearest ones of their row without mask, rows without
 /// such the nearest row with one. A new image; `image` itself where the mask is empty.
