@@ -131,11 +131,6 @@ void checkPair(const PinholeCamera& left, const PinholeCamera& right, const Ster
 
 }  // namespace
 
-PinholeCamera PinholeCamera::scaled(double x, double y) const {
-  const cv::Size other(cvRound(size.width * x), cvRound(size.height * y));
-  return {fx * x, fy * y, (cx + 0.5) * x - 0.5, (cy + 0.5) * y - 0.5, other, tx * x, ty * y};
-}
-
 PinholeCamera pinholeCamera(const CameraInfo& info, cv::Size image_size) {
   PinholeCamera camera{info.P[0], info.P[5], info.P[2], info.P[6], image_size, info.P[3], info.P[7]};
   if (camera.fx == 0.0) camera = {info.K[0], info.K[4], info.K[2], info.K[5], image_size};
@@ -150,6 +145,14 @@ PinholeCamera pinholeCamera(const CameraInfo& info, cv::Size image_size) {
           camera.ty / by};
 }
 
+PinholeCamera checkedCamera(const CameraInfo& info, cv::Size image_size, const std::string& topic, Warnings& warnings) {
+  checkProjection(info, topic);
+  checkSize(info, image_size, topic, warnings);
+  const PinholeCamera camera = pinholeCamera(info, image_size);
+  checkCentre(camera, topic);
+  return camera;
+}
+
 DescribedSize describedSize(const CameraInfo& info) {
   return {(info.roi.width != 0 ? info.roi.width : info.width) / std::max(1U, info.binning_x),
           (info.roi.height != 0 ? info.roi.height : info.height) / std::max(1U, info.binning_y)};
@@ -162,14 +165,8 @@ double StereoGeometry::depth(double disparity) const {
 
 StereoGeometry stereoGeometry(const CameraInfo& left, const CameraInfo& right, cv::Size image_size,
                               const StereoTopics& topics, Warnings& warnings) {
-  checkProjection(left, topics.left_info);
-  checkProjection(right, topics.right_info);
-  checkSize(left, image_size, topics.left_info, warnings);
-  checkSize(right, image_size, topics.right_info, warnings);
-  const PinholeCamera l = pinholeCamera(left, image_size);
-  const PinholeCamera r = pinholeCamera(right, image_size);
-  checkCentre(l, topics.left_info);
-  checkCentre(r, topics.right_info);
+  const PinholeCamera l = checkedCamera(left, image_size, topics.left_info, warnings);
+  const PinholeCamera r = checkedCamera(right, image_size, topics.right_info, warnings);
   checkPlaces(l, r, topics, warnings);
   checkPair(l, r, topics, warnings);
   const double baseline_m = checkedBaseline(l, r, topics.right_info, warnings);

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include <sensor_msgs/CameraInfo.h>
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
+
+#include "fdp_stereo/pinhole_camera.hpp"
 
 /// What camera_info says of one camera and of a rectified pair. Pure functions.
 namespace fdp_stereo {
@@ -20,29 +21,14 @@ struct StereoTopics {
   std::string right_info = "right/camera_info";
 };
 
-/// P of a camera in px of its image as published: camera_info speaks of the full sensor. Points are those of the frame
-/// that P projects from; with tx or ty the camera is not at its origin but at (-tx / fx, -ty / fy, 0).
-struct PinholeCamera {
-  double fx = 0.0;
-  double fy = 0.0;
-  double cx = 0.0;
-  double cy = 0.0;
-  cv::Size size;
-  double tx = 0.0;  ///< px * m
-  double ty = 0.0;  ///< px * m
-
-  Eigen::Vector2d project(const Eigen::Vector3d& point) const {
-    return {(fx * point.x() + tx) / point.z() + cx, (fy * point.y() + ty) / point.z() + cy};
-  }
-  Eigen::Vector3d backProject(double u, double v, double z) const {
-    return {((u - cx) * z - tx) / fx, ((v - cy) * z - ty) / fy, z};
-  }
-  /// The same camera with an image of another resolution: pixel areas cover one another.
-  PinholeCamera scaled(double x, double y) const;
-};
-
-/// Binning and region of interest applied, from P where it is set, else from K; nothing is checked.
+/// P of a camera in px of its image as published, while camera_info speaks of the full sensor: binning and region of
+/// interest applied, from P where it is set, else from K; nothing is checked.
 PinholeCamera pinholeCamera(const sensor_msgs::CameraInfo& info, cv::Size image_size);
+
+/// The same, checked. image_size: px of the image as received. Throws std::invalid_argument naming `topic` where no
+/// point can be computed; appends to `warnings` where the calibration is usable but odd.
+PinholeCamera checkedCamera(const sensor_msgs::CameraInfo& info, cv::Size image_size, const std::string& topic,
+                            std::vector<std::string>& warnings);
 
 /// px of the image that a camera_info describes, binning and region of interest applied; 0 where it does not say.
 struct DescribedSize {
