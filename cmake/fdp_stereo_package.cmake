@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # -dev packages, and roslaunch needs them.
 string(CONCAT CPACK_DEBIAN_PACKAGE_DEPENDS
   "python3-roslaunch, rosbash, rosout, python3-rosbag, librosbag-dev, libnodelet-dev, libnodeletlib-dev, libnodeletlib-tools, "
-  "python3-dynamic-reconfigure, python3-stereo-msgs, python3-diagnostic-msgs, libimage-proc-dev, ros-image-proc, libdepth-image-proc-dev, "
+  "python3-dynamic-reconfigure, python3-stereo-msgs, python3-diagnostic-msgs, libimage-proc-dev, ros-image-proc, "
   "libimage-transport-dev")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS rviz)
 include(CPack)

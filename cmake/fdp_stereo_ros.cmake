@@ -10,7 +10,6 @@ add_library(fdp_stereo_nodelet
   src/ros/params_ros.cpp
   src/ros/reconfigure_server.cpp
   src/ros/pair_synchronizer.cpp
-  src/ros/frame_worker.cpp
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp
   src/ros/frame_processor.cpp
@@ -19,7 +18,11 @@ add_library(fdp_stereo_nodelet
   src/ros/node_reporter.cpp
   src/ros/periodic_task.cpp
   src/ros/thread_priority.cpp
+  src/ros/point_frame.cpp
+  src/ros/point_messages.cpp
+  src/ros/point_params.cpp
   src/ros/disparity_nodelet.cpp
+  src/ros/points_nodelet.cpp
 )
 add_dependencies(fdp_stereo_nodelet ${PROJECT_NAME}_gencfg)
 target_include_directories(fdp_stereo_nodelet PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src/ros>)

@@ -19,12 +19,11 @@ run_packages=(
   python3-roslaunch rosbash rosout python3-rosbag python3-rostopic python3-rosnode python3-rosparam
   python3-stereo-msgs python3-sensor-msgs python3-diagnostic-msgs python3-numpy python3-cv-bridge python3-opencv
   image-transport-tools topic-tools libimage-proc-dev ros-image-proc libstereo-image-proc-dev ros-stereo-image-proc
-  libdepth-image-proc-dev
 )
 test_packages=(
   libgtest-dev libbenchmark-dev librostest-dev python3-rostest python3-tf2-ros
   clang clang-format clang-tidy universal-ctags libomp-dev libclang-rt-dev shellcheck catkin-lint catkin-tools
-  chromium chromium-driver doxygen graphviz
+  chromium chromium-driver doxygen graphviz liboctomap-dev
 )
 
 # What some releases lack: without CLI11 there are no command-line tools.

@@ -6,6 +6,9 @@
 
 namespace fdp_stereo {
 
+/// The confidence from which an answer may tell that a ray is free.
+constexpr double kSureOfFree = 0.85;
+
 /// How far rays are known to be free, on a grid of squares of `spacing` px, the incomplete ones at the right and lower
 /// edge too: as a disparity (px), down to which everything between the camera and it is free; NaN = not known.
 ///

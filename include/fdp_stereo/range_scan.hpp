@@ -25,6 +25,8 @@ struct SeenDepth {
   cv::Mat depth;       ///< CV_32FC1 m, NaN = none: of what is answered and can be trusted
   cv::Mat free_depth;  ///< CV_32FC1 m, per square of `spacing` px: down to where its ray is free, NaN = not known
   int spacing = 8;     ///< px
+  /// m: the nearest depth that can be seen. What lies between it and the camera is not judged.
+  double nearest = 0.0;
 };
 
 /// Nearest obstacles around the z axis of a frame.

@@ -24,8 +24,8 @@ void describePlace(const PinholeCamera& left, const StereoFrame& frame, const st
   if (left.tx == 0.0 && left.ty == 0.0) return;
   report.notes.push_back(text(topic, ": P[3] = ", left.tx, ", P[7] = ", left.ty, ": the camera is at (",
                               -left.tx / left.fx, ", ", -left.ty / left.fy, ", 0) m beside the origin of ",
-                              quoteForLog(frame.left->header.frame_id), "; depth and seeds follow that, but points of ",
-                              "depth_image_proc (points2) have the camera as their origin"));
+                              quoteForLog(frame.left->header.frame_id), "; depth, seeds and points2 follow that, but ",
+                              "points of depth_image_proc have the camera as their origin"));
 }
 
 /// What others do with the result needs both.

@@ -8,19 +8,12 @@
 #include <geometry_msgs/TransformStamped.h>
 #include <boost/make_shared.hpp>
 
+#include "isometry.hpp"
+
 namespace fdp_stereo {
 namespace {
 
 constexpr std::uint32_t kQueue = 5;
-
-Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
-  const auto& q = transform.rotation;
-  const auto& t = transform.translation;
-  Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
-  isometry.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-  isometry.translation() = Eigen::Vector3d(t.x, t.y, t.z);
-  return isometry;
-}
 
 /// So many pixels of the other image lie in one square of the spacing.
 int strideFor(double spacing_px, std::uint32_t width, int left_width) {

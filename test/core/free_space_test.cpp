@@ -94,8 +94,11 @@ struct Tally {
 void tally(const Scene& scene, Tally& sum) {
   PipelineParams params = loadPreset("fast");
   params.search = {0, scene.num_disparities};
-  const cv::Mat disparity = Pipeline(params).run(scene.left, scene.right).disparity;
-  const cv::Mat free = freeDisparity(disparity, {}, 1000.0, kSpacing);
+  Pipeline pipeline(params);
+  pipeline.setQuality(Pipeline::Quality::kEstimated);
+  const PipelineResult result = pipeline.run(scene.left, scene.right);
+  const cv::Mat& disparity = result.disparity;
+  const cv::Mat free = freeDisparity(disparity, result.confidence >= kSureOfFree, 1000.0, kSpacing);
   for (int y = 0; y < free.rows; ++y) {
     for (int x = 0; x < free.cols; ++x) {
       const cv::Point pixel = rayPixel({x, y}, kSpacing, disparity.size());

@@ -27,7 +27,7 @@ Eigen::Isometry3d scanFromCamera(double yaw = 0.0) {
 
 /// A floor, and a wall at wall_m; every pixel is answered.
 SeenDepth room(double wall_m) {
-  SeenDepth seen{{200.0, 200.0, 79.5, 59.5, {160, 120}}, {}, {}, kSpacing};
+  SeenDepth seen{{200.0, 200.0, 79.5, 59.5, {160, 120}}, {}, {}, kSpacing, 0.0};
   seen.depth = cv::Mat(120, 160, CV_32FC1);
   for (int v = 0; v < 120; ++v) {
     const double down = (v - 59.5) / 200.0;
@@ -71,6 +71,20 @@ TEST(RangeScan, AnObstacleIsToldWhateverElseIsNotKnown) {
   seen.depth(cv::Rect(64, 48, 32, 24)).setTo(kInvalidDisparity);
   seen.depth(cv::Rect(70, 50, 20, 5)).setTo(2.0F);
   EXPECT_NEAR(straightAhead(scanRanges(seen, scanFromCamera(), {})), 2.0, 0.01);
+}
+
+TEST(RangeScan, AnUnseenStripLeavesTheOtherBearingsFree) {
+  for (const double forward : {0.0, 0.2}) {
+    SeenDepth seen = room(9.0);
+    seen.depth.colRange(0, 16).setTo(kInvalidDisparity);
+    seen.nearest = 0.5;
+    Eigen::Isometry3d place = scanFromCamera();
+    place.translation().x() = forward;
+    const RangeScan scan = scanRanges(seen, place, {});
+    EXPECT_EQ(straightAhead(scan), 5.0F) << forward;
+    EXPECT_TRUE(std::isnan(scan.ranges.back())) << "the left end";
+    EXPECT_EQ(scan.ranges[scan.ranges.size() * 3 / 4], 5.0F);
+  }
 }
 
 TEST(RangeScan, OnlyWhatIsBetweenTheHeightsCounts) {

@@ -136,11 +136,13 @@ class Scanner {
 
   /// What the ray of a square tells of the bearings that the square covers. free_to: depth, NaN = not known.
   void addRay(cv::Point pixel, double free_to) {
-    const std::optional<Stretch> stretch = stretchOf(ray(pixel.x, pixel.y), params_);
-    if (!stretch) return;
+    const Ray middle = ray(pixel.x, pixel.y);
+    const std::optional<Stretch> stretch = stretchOf(middle, params_);
+    const double nearest = std::max(seen_.nearest, depthAtRange(middle, params_.min_range_m));
+    if (!stretch || stretch->end <= nearest) return;
     const bool free = free_to >= stretch->end;
     if (free && !stretch->reaches_range) return;
-    const double from = free ? stretch->end : std::fmax(stretch->begin, free_to);
+    const double from = free ? stretch->end : std::fmax(std::max(stretch->begin, nearest), free_to);
     const double half = seen_.spacing / 2.0;
     double first = kInfinity;
     double last = -kInfinity;
