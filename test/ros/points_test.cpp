@@ -119,7 +119,7 @@ TEST(Points, AConsumerThatEndsLeavesTheManagerAlone) {
 /// The last test: without its manager the loader says so and ends.
 TEST(Points, AManagerThatDiesIsTold) {
   Inbox<rosgraph_msgs::Log> log(ros::NodeHandle(), "/rosout");
-  ASSERT_TRUE(test::waitUntil([&] { return log.publishers() > 3; }));
+  ASSERT_TRUE(test::waitUntil([&] { return log.publishers() > 5; }));
   killNode("/stereo_manager");
   EXPECT_TRUE(log.wait([](const auto& line) {
     return line.name == "/parallel/disparity" && line.msg.find("Bond broken") != std::string::npos;
