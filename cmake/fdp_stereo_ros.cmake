@@ -12,6 +12,7 @@ add_library(fdp_stereo_nodelet
   src/ros/pair_synchronizer.cpp
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp
+  src/ros/mask_sources.cpp
   src/ros/frame_processor.cpp
   src/ros/output_topics.cpp
   src/ros/node_status.cpp

@@ -28,8 +28,11 @@ bool isDisparityName(const std::string& path);
 /// Reads a PNG, JPEG, TIFF, BMP, WebP or PNM image as it is: CV_8U or CV_16U, 1 or 3 (BGR; transparency dropped)
 /// channels. Throws std::runtime_error naming the file and what is wrong with it. Pipes can be read, too.
 cv::Mat readImage(const std::string& path);
-/// The same from the bytes of such a file; `name` stands for it in errors. More than max_pixels are refused before
-/// anything is decoded.
+/// The mask that a picture (8U or 16U, any channels) shows: CV_8UC1, 255 where it is at least half as bright as white
+/// in any channel.
+cv::Mat toMask(const cv::Mat& picture);
+/// The same as readImage() from the bytes of such a file; `name` stands for it in errors. More than max_pixels are
+/// refused before anything is decoded.
 cv::Mat decodeImageFile(std::string_view bytes, const std::string& name,
                         std::int64_t max_pixels = std::int64_t{kMaxImageSide} * kMaxImageSide);
 /// Whether the extension of `path` is one that writeImage() knows: PNG, JPEG, TIFF, BMP, WebP or PNM.

@@ -62,6 +62,10 @@ class Pipeline {
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
   /// Confidence and sigma are estimated unless nobody wants them: they are empty then.
   void setQuality(Quality quality) { quality_ = quality; }
+  /// Pixels to leave out of the next runs, in each image as given (the robot's body, dirt, a border): CV_8UC1, not 0 =
+  /// left out; empty = none. They are neither matched nor seeds, have no disparity though holes are filled, and what
+  /// they show has no influence on the others.
+  void setMasks(const cv::Mat& left, const cv::Mat& right);
   /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values).
   void reset();
 
@@ -69,8 +73,8 @@ class Pipeline {
   struct State;
   struct Frame;
   StereoPair prepare(const cv::Mat& left, const cv::Mat& right);
-  RowAlignment alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair);
-  void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
+  RowAlignment alignPair(const FeatureMatches& matches, int given_rows, Frame& frame);
+  void buildSeeds(Frame& frame, Seeds external, PipelineResult& result);
   double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
                      CostVolume& volume) const;
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);

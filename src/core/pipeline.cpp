@@ -19,6 +19,7 @@
 #include "images/blind_pixels.hpp"
 #include "images/colour.hpp"
 #include "images/cost_views.hpp"
+#include "images/view_masks.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
@@ -141,7 +142,8 @@ SparseDisparity allSeeds(const PipelineResult& result) {
 
 /// What is kept from pair to pair.
 struct Pipeline::State {
-  cv::Size size;  ///< of the last pair as it was given
+  ViewMasks masks;  ///< of the images as given
+  cv::Size size;    ///< of the last pair as it was given
   int type = -1;
   ValueRange values;
   RowAlignmentAccumulator row_alignment;
@@ -157,6 +159,7 @@ struct Pipeline::Frame {
   DisparityRange search;
   cv::Mat guide;  ///< left, CV_8UC1
   cv::Mat blind;  ///< CV_8UC1, 255 where the left view holds no information
+  ViewMasks masks;
   OptimizerOutput optimized;
 };
 
@@ -178,11 +181,16 @@ void Pipeline::reset() {
   state_->values = {};
 }
 
+void Pipeline::setMasks(const cv::Mat& left, const cv::Mat& right) { state_->masks = {left.clone(), right.clone()}; }
+
+/// What lies under the masks is replaced by what is beside them: nothing depends on it.
 StereoPair Pipeline::prepare(const cv::Mat& left, const cv::Mat& right) {
+  checkMask(state_->masks.left, left.size(), "left mask");
+  checkMask(state_->masks.right, right.size(), "right mask");
   if (left.size() != state_->size || left.type() != state_->type) state_->values = {};
   state_->size = left.size();
   state_->type = left.type();
-  return prepareImages(left, right, state_->values);
+  return prepareImages(extendUnder(state_->masks.left, left), extendUnder(state_->masks.right, right), state_->values);
 }
 
 PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Seeds& external,
@@ -194,18 +202,20 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const StereoPair given = prepare(left, right);
   result.left = given.left;
   const Scaling scaling(given.left.size(), params_.scale);
-  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}};
+  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}};
+  frame.masks = shrinkMasks(state_->masks, frame.pair.left.size());
   checkMemory(params_, frame.pair.left.size(), frame.search);
   frame.blind = blindPixels(frame.pair.left_grey);
   extendPair(frame.pair);
   clock.done("image_preparation");
 
   FeatureMatching features = matchFeatures(frame.pair, frame.search, params_.feature_matching);
+  dropMasked(frame.masks, features.matches);
   result.matches = std::move(features.matches);
   result.feature_note = std::move(features.note);
   clock.done("feature_matching");
 
-  result.row_alignment = alignPair(result.matches, given.left.rows, frame.pair);
+  result.row_alignment = alignPair(result.matches, given.left.rows, frame);
   clock.done("row_alignment");
 
   frame.cost = costViews(frame.pair, params_.matching_cost);
@@ -223,23 +233,28 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
 
   refine(frame, result);
   if (!scaling.identity()) restoreSize(scaling, frame.pair.left, given.left, result);
+  if (!state_->masks.left.empty()) dropMasked({state_->masks.left, {}}, result.disparity);
   clock.done("refinement");
   return result;
 }
 
-RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair) {
+RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, Frame& frame) {
   if (!params_.row_alignment.enabled) return {};
+  StereoPair& pair = frame.pair;
   const cv::Size size = pair.left.size();
   const double given_px = static_cast<double>(given_rows) / size.height;
   RowAlignment alignment = state_->row_alignment.update(matches, size, params_.row_alignment, given_px);
   const bool shared = pair.right.data == pair.right_grey.data;
   pair.right = alignRows(pair.right, alignment.model);
   pair.right_grey = shared ? pair.right : alignRows(pair.right_grey, alignment.model);
+  if (!frame.masks.right.empty()) frame.masks.right = alignRows(frame.masks.right, alignment.model);
   return alignment;
 }
 
 /// Seeds of the features and of other sensors, and those of a rough first matching.
-void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result) {
+void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) {
+  dropMasked({frame.masks.left, {}}, external);  // another sensor sees behind what hides it from the right view
+
   const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
   SparseDisparity sparse = buildSparseDisparity(aligned, external, frame.pair, frame.search, params_.sparse_disparity);
   result.seeds = std::move(sparse.seeds);
@@ -250,9 +265,11 @@ void Pipeline::buildSeeds(Frame& frame, const Seeds& external, PipelineResult& r
     if (seed.source == SeedSource::kFeature) continue;
     cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);
   }
+  if (!frame.masks.left.empty()) frame.blind.setTo(255, frame.masks.left);
   if (!wantsQuasiDense(params_)) return;
   result.quasi_dense_seeds =
       quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
+  dropMasked(frame.masks, result.quasi_dense_seeds);
 }
 
 /// Spreads the seeds in the costs of a view; returns the share of the pixels whose costs they changed.
@@ -303,6 +320,7 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   const cv::Mat& left = frame.pair.left;
   const cv::Mat roughness = quality_ == Quality::kNone ? cv::Mat() : disparityRoughness(disparity);
   dropHidden(disparity);
+  dropMasked(frame.masks, disparity);
   if (params_.left_right_check.enabled && !frame.optimized.disparity_right.empty()) {
     checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
   }

@@ -95,6 +95,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::array<std::string, 4> input_names_;  ///< resolved, in the order of PairSynchronizer::Input
   std::unique_ptr<ReconfigureServer> reconfigure_;
   std::unique_ptr<SeedSources> seeds_;
+  std::unique_ptr<MaskSources> masks_;
   std::unique_ptr<FrameProcessor> processor_;
   std::atomic<bool> forget_{false};  ///< tells the worker that the stamps jumped back
 
@@ -124,6 +125,7 @@ void DisparityNodelet::release() {
   if (worker_) unsubscribe();
   worker_.reset();
   seeds_.reset();
+  masks_.reset();
   reconfigure_.reset();
 }
 
@@ -150,6 +152,7 @@ void DisparityNodelet::start() {
   const NodeReporter::Periods periods{readPeriod(params, "diagnostic_period", kDiagnosticsPeriod),
                                       readPeriod(params, "watch_period", kWatchPeriod)};
   seeds_ = std::make_unique<SeedSources>(node, params);
+  masks_ = std::make_unique<MaskSources>(node, params);
   reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), params.names(), say);
 
   synchronizer_ = std::make_unique<PairSynchronizer>(
@@ -159,9 +162,10 @@ void DisparityNodelet::start() {
                                                     " s is too far from the others'; check the clock of the camera"));
                                         }});
   const auto& [left, left_info, right, right_info] = input_names_;
-  processor_ =
-      std::make_unique<FrameProcessor>(StereoTopics{left, right, left_info, right_info},
-                                       [this](const SeedRequest& request) { return seeds_->collect(request); });
+  processor_ = std::make_unique<FrameProcessor>(
+      StereoTopics{left, right, left_info, right_info},
+      [this](const SeedRequest& request) { return seeds_->collect(request); },
+      [this](cv::Size size) { return masks_->masks(size); });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
   reporter_.update([&](NodeStatus& status) { status.approximate_sync = sync.approximate; });
@@ -204,6 +208,7 @@ void DisparityNodelet::subscribe() {
       "right/camera_info", 1, [this](const CameraInfoConstPtr& m) { onInput(PairSynchronizer::kRightInfo, m); },
       ros::VoidConstPtr(), no_delay);
   seeds_->subscribe();
+  masks_->subscribe();
 }
 
 /// Throws image_transport::Exception where ~image_transport names no transport that there is.
@@ -223,6 +228,7 @@ void DisparityNodelet::unsubscribe() {
   left_info_.shutdown();
   right_info_.shutdown();
   seeds_->unsubscribe();
+  masks_->unsubscribe();
   worker_->clear();
 }
 

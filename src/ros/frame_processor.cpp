@@ -94,6 +94,8 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   Pipeline& pipeline = pipelineFor(settings);
   const bool quality = needsQuality(settings.node, wanted);
   pipeline.setQuality(quality ? Pipeline::Quality::kEstimated : Pipeline::Quality::kNone);
+  const MaskPair masks = masks_ ? masks_(left.size()) : MaskPair();
+  pipeline.setMasks(masks[0], masks[1]);
   PipelineResult result = pipeline.run(left, right, external, cancel);
   if (cancel != nullptr && *cancel) return output;
   // What both cameras cannot have seen stays unknown though filled: consumers rely on a map that is not fully dense.

@@ -15,6 +15,7 @@
 #include "conversions.hpp"
 #include "fdp_stereo/pipeline.hpp"
 #include "frame_worker.hpp"
+#include "mask_sources.hpp"
 #include "params_ros.hpp"
 #include "seed_conversions.hpp"
 
@@ -68,12 +69,14 @@ struct SeedRequest {
   std::vector<std::string>& warnings;  ///< what was left out and why
 };
 using SeedProvider = std::function<Seeds(const SeedRequest& request)>;
+/// What to leave out of the images of a size.
+using MaskProvider = std::function<MaskPair(cv::Size size)>;
 
 /// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
 class FrameProcessor {
  public:
-  explicit FrameProcessor(StereoTopics topics, SeedProvider seeds = nullptr)
-      : topics_(std::move(topics)), seeds_(std::move(seeds)) {}
+  explicit FrameProcessor(StereoTopics topics, SeedProvider seeds = nullptr, MaskProvider masks = nullptr)
+      : topics_(std::move(topics)), seeds_(std::move(seeds)), masks_(std::move(masks)) {}
 
   /// Throws std::invalid_argument naming the topic, the value and the remedy where no disparity can come out. The
   /// outputs stay null where `cancel` was set meanwhile.
@@ -91,6 +94,7 @@ class FrameProcessor {
 
   StereoTopics topics_;
   SeedProvider seeds_;
+  MaskProvider masks_;
   std::unique_ptr<Pipeline> pipeline_;
   unsigned revision_ = 0;
   RowAlignment told_rows_;  ///< whose warning is told as long as the offset is much the same

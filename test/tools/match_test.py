@@ -131,6 +131,18 @@ class MatchTest(unittest.TestCase):
         self.refused(1, "half.pfm: is 55 x 30 px, the left image 110 x 60 px", self.left, self.right, "--output",
                      self.path("d.pfm"), "--seeds", self.path("half.pfm"))
 
+    def test_masks_leave_pixels_out(self):
+        mask = np.zeros(self.truth.shape, np.uint8)
+        mask[10:30, 40:70] = 255
+        cv2.imwrite(self.path("mask.png"), mask)
+        self.match("--fill", "--left-mask", self.path("mask.png"))
+        disparity = read_pfm(self.path("d.pfm"))
+        self.assertTrue(np.isinf(disparity[10:30, 40:70]).all())
+        self.assertTrue(np.isfinite(disparity[mask == 0]).all())
+        cv2.imwrite(self.path("small.png"), mask[:20])
+        self.refused(1, "small.png: a mask of", self.left, self.right, "--output", self.path("e.pfm"), "--right-mask",
+                     self.path("small.png"))
+
     def test_exchanged_views_are_told(self):
         left, right, _ = rendered_pair(height=160, width=240)
         cv2.imwrite(self.left, left)

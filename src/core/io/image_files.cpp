@@ -57,6 +57,14 @@ cv::Mat readImage(const std::string& path) {
   return decodeImageFile(bytes, path);
 }
 
+cv::Mat toMask(const cv::Mat& picture) {
+  std::vector<cv::Mat> channels;
+  cv::split(picture, channels);
+  cv::Mat brightest = channels[0];
+  for (const cv::Mat& channel : channels) brightest = cv::max(brightest, channel);
+  return brightest >= (picture.depth() == CV_8U ? 128 : 32768);
+}
+
 bool isImageName(const std::string& path) {
   const std::string type = extension(path);
   return std::find(kImageExtensions.begin(), kImageExtensions.end(), type) != kImageExtensions.end();
