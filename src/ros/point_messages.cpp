@@ -176,7 +176,7 @@ sensor_msgs::LaserScanPtr toLaserScan(const PointView& view, const cv::Mat& free
   scan->header.frame_id = scan_frame;
   scan->angle_increment = static_cast<float>(ranges.increment);
   scan->angle_min = static_cast<float>(std::remainder(ranges.first_bearing + ranges.increment / 2.0, 2.0 * M_PI));
-  scan->angle_max = scan->angle_min + scan->angle_increment * static_cast<float>(ranges.ranges.size() - 1);
+  scan->angle_max = scan->angle_min + scan->angle_increment * (static_cast<float>(ranges.ranges.size()) - 1.0F);
   scan->range_min = static_cast<float>(params.min_range_m);
   scan->range_max = static_cast<float>(params.max_range_m);
   scan->ranges = ranges.ranges;

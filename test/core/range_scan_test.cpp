@@ -113,6 +113,13 @@ TEST(RangeScan, NoRayIsLeftOutBetweenSquares) {
   EXPECT_EQ(std::count(scan.ranges.begin(), scan.ranges.end(), 5.0F), static_cast<int>(scan.ranges.size()));
 }
 
+TEST(RangeScan, ACameraWithoutAFocalLengthSeesNothing) {
+  SeenDepth seen = room(3.0);
+  seen.camera.fx = 1e-310;
+  const RangeScan scan = scanRanges(seen, scanFromCamera(), {});
+  for (const float range : scan.ranges) EXPECT_TRUE(std::isnan(range));
+}
+
 TEST(RangeScan, ACameraThatLooksStraightDown) {
   Eigen::Isometry3d down = Eigen::Isometry3d::Identity();
   down.linear() = Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX()).toRotationMatrix();

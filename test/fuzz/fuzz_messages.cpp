@@ -10,6 +10,7 @@
 #include "conversions.hpp"
 #include "frame_processor.hpp"
 #include "fuzz_input.hpp"
+#include "point_messages.hpp"
 #include "seed_conversions.hpp"
 
 namespace fdp_stereo::fuzz {
@@ -149,13 +150,48 @@ void fuzzSeeds(Input& input) {
   expectOnlyInvalid([&] { project(pointsOfDisparity(disparity, left, 1, "disparity")); });
 }
 
+stereo_msgs::DisparityImage takeDisparity(Input& input) {
+  stereo_msgs::DisparityImage disparity;
+  disparity.image = takeImage(input);
+  disparity.f = input.take<float>();
+  disparity.T = input.take<float>();
+  disparity.min_disparity = input.take<float>();
+  disparity.max_disparity = input.take<float>();
+  return disparity;
+}
+
+void fuzzPoints(Input& input) {
+  const auto optional = [&](bool given) {
+    return given ? boost::make_shared<sensor_msgs::Image>(takeImage(input)) : sensor_msgs::ImagePtr();
+  };
+  const auto parts = input.take<std::uint8_t>();
+  const auto disparity = boost::make_shared<stereo_msgs::DisparityImage>(takeDisparity(input));
+  const auto info =
+      boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, disparity->image.width, disparity->image.height));
+  const PointFrame frame{disparity, info, optional(parts % 2 != 0), optional(parts % 4 > 1), optional(parts % 8 > 3)};
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+  place.linear() = Eigen::AngleAxisd(parts, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  place.translation().setConstant(0.01 * input.take<std::int8_t>());
+  expectOnlyInvalid([&] {
+    std::vector<std::string> warnings;
+    const PointView view = decodePointFrame(frame, {1, 0.5, 0.1}, {}, warnings);
+    toPointCloud(view, 1 + parts / 64);
+    const cv::Mat free_depth = freeDepth(view);
+    toFreeSpaceCloud(view, free_depth);
+    toLaserScan(view, free_depth, place, "base_link", {});
+  });
+}
+
 }  // namespace
 }  // namespace fdp_stereo::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fdp_stereo::fuzz::Input input(data, size);
-  if (input.take<std::uint8_t>() % 2 == 0) {
+  const auto kind = input.take<std::uint8_t>();
+  if (kind % 2 == 0) {
     fdp_stereo::fuzz::fuzzPair(input);
+  } else if (kind > 223) {
+    fdp_stereo::fuzz::fuzzPoints(input);
   } else {
     fdp_stereo::fuzz::fuzzSeeds(input);
   }

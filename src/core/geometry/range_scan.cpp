@@ -73,7 +73,8 @@ class Scanner {
     for (int u = 0; u < seen.depth.cols; ++u) see(u, 0), see(u, seen.depth.rows - 1);
     for (int v = 0; v < seen.depth.rows; ++v) see(0, v), see(seen.depth.cols - 1, v);
     first_ = first;
-    const auto count = static_cast<std::size_t>((last - first) / params.increment_rad) + 1;
+    const bool sees = last >= first;  // not where the focal length makes all rays infinite
+    const std::size_t count = sees ? static_cast<std::size_t>((last - first) / params.increment_rad) + 1 : 0;
     obstacles_.assign(count, kInfinity);
     states_.assign(count, State::kUnseen);
   }
