@@ -58,7 +58,7 @@ class Matcher {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < end) {
       publish(scene.frame());
-      if (const auto m = output.wait([&](const auto& o) { return o.header.stamp >= first; }, 0.3)) return m;
+      if (auto m = output.wait([&](const auto& o) { return o.header.stamp >= first; }, 0.3)) return m;
       scene.stamp = nextStamp();
     }
     return nullptr;
