@@ -16,6 +16,7 @@ class Scaling;
 /// What one run tells of itself.
 struct PipelineStats {
   std::string feature_note;  ///< why another detector than the wanted one ran; empty otherwise
+  TemporalReport temporal;
   RowAlignment row_alignment;
   double propagated_share = 0.0;  ///< share of the pixels whose costs the seeds changed
   std::vector<double> energies;   ///< of the optimiser, per iteration
@@ -61,14 +62,22 @@ class Pipeline {
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
   /// Confidence and sigma are estimated unless nobody wants them: they are empty then.
-  void setQuality(Quality quality) { quality_ = quality; }
-  /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values).
-  void reset();
+  void setQuality(Quality quality);
+  /// The pairs to come follow one another before one camera: temporal.enabled averages what stands still. Otherwise
+  /// each pair is one by itself.
+  void setStream(bool stream);
+  /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values, the memory of the stream), for
+  /// this reason.
+  void reset(const std::string& reason = "asked for");
 
  private:
   struct State;
   struct Frame;
+  class StageClock;
   StereoPair prepare(const cv::Mat& left, const cv::Mat& right);
+  PipelineResult repeat(PipelineResult now) const;
+  void compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel, StageClock& clock,
+               PipelineResult& result);
   RowAlignment alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair);
   void buildSeeds(Frame& frame, const Seeds& external, PipelineResult& result);
   double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
@@ -82,6 +91,7 @@ class Pipeline {
   PipelineParams params_;
   OptimizerProgress progress_;
   Quality quality_ = Quality::kEstimated;
+  bool stream_ = false;
   std::unique_ptr<State> state_;
 };
 

@@ -19,6 +19,7 @@
 #include "images/blind_pixels.hpp"
 #include "images/colour.hpp"
 #include "images/cost_views.hpp"
+#include "images/temporal_average.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
@@ -27,21 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSensorReachPx = 16;  ///< how far around a seed another sensor vouches for what the cameras do not see
-
-/// Times one stage after another.
-class StageClock {
- public:
-  explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
-  void done(const char* stage) {
-    const auto now = Clock::now();
-    times_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
-    start_ = now;
-  }
-
- private:
-  std::vector<StageTime>& times_;
-  Clock::time_point start_;
-};
 
 /// Uses a number of threads, OpenCV's among them, for as long as it lives. OpenCV has one number for the process.
 class ThreadScope {
@@ -131,6 +117,13 @@ void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::M
   dropUnexplained(blind, disparity);
 }
 
+/// A result whose maps the caller may change.
+PipelineResult copyOf(const PipelineResult& result) {
+  PipelineResult copy = result;
+  for (cv::Mat* map : {&copy.disparity, &copy.confidence, &copy.sigma}) *map = map->clone();
+  return copy;
+}
+
 }  // namespace
 
 SparseDisparity allSeeds(const PipelineResult& result) {
@@ -139,11 +132,29 @@ SparseDisparity allSeeds(const PipelineResult& result) {
   return all;
 }
 
+/// Times one stage after another.
+class Pipeline::StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
+  void done(const char* stage) {
+    const auto now = Clock::now();
+    times_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
+    start_ = now;
+  }
+
+ private:
+  std::vector<StageTime>& times_;
+  Clock::time_point start_;
+};
+
 /// What is kept from pair to pair.
 struct Pipeline::State {
   cv::Size size;  ///< of the last pair as it was given
   int type = -1;
   ValueRange values;
+  TemporalAverage average;
+  PipelineResult last;      ///< of the pair before in a stream
+  bool repeatable = false;  ///< a pair that is the same has the same result
   RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
   CostVolume volume;
@@ -171,11 +182,23 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 void Pipeline::setParams(const PipelineParams& params) {
   validate(params);
   params_ = params;
+  state_->average.reset("new parameters");
 }
 
-void Pipeline::reset() {
+void Pipeline::setStream(bool stream) {
+  if (stream != stream_) state_->average.reset("a stream begins");
+  stream_ = stream;
+}
+
+void Pipeline::setQuality(Quality quality) {
+  if (quality != quality_) state_->repeatable = false;
+  quality_ = quality;
+}
+
+void Pipeline::reset(const std::string& reason) {
   state_->row_alignment.reset();
   state_->values = {};
+  state_->average.reset(reason);
 }
 
 StereoPair Pipeline::prepare(const cv::Mat& left, const cv::Mat& right) {
@@ -190,9 +213,37 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const ThreadScope threads(params_.threads);
   PipelineResult result;
   StageClock clock(result.times);
-
-  const StereoPair given = prepare(left, right);
+  StereoPair given = prepare(left, right);
   result.left = given.left;
+  clock.done("image_preparation");
+  if (!stream_ || !params_.temporal.enabled) {
+    compute(given, external, cancel, clock, result);
+    return result;
+  }
+  const TemporalAverage::Outcome outcome = state_->average.update(given);
+  result.temporal = {outcome.kept_share, !outcome.changed && state_->repeatable && external.empty(), outcome.reset};
+  clock.done("temporal");
+  if (result.temporal.repeated) return repeat(std::move(result));
+  state_->repeatable = false;
+  compute(given, external, cancel, clock, result);
+  state_->average.steady(state_->last.disparity, result.disparity);
+  state_->last = copyOf(result);
+  state_->repeatable = external.empty() && !(cancel != nullptr && *cancel);
+  return result;
+}
+
+/// The result of the pair before, with what this pair alone tells.
+PipelineResult Pipeline::repeat(PipelineResult now) const {
+  PipelineResult result = copyOf(state_->last);
+  result.left = std::move(now.left);
+  result.temporal = std::move(now.temporal);
+  result.times = std::move(now.times);
+  return result;
+}
+
+/// All stages from the features on.
+void Pipeline::compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel,
+                       StageClock& clock, PipelineResult& result) {
   const Scaling scaling(given.left.size(), params_.scale);
   Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}};
   checkMemory(params_, frame.pair.left.size(), frame.search);
@@ -224,7 +275,6 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   refine(frame, result);
   if (!scaling.identity()) restoreSize(scaling, frame.pair.left, given.left, result);
   clock.done("refinement");
-  return result;
 }
 
 RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, StereoPair& pair) {

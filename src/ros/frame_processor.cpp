@@ -167,6 +167,7 @@ std::pair<cv::Mat, cv::Mat> FrameProcessor::decodePair(const StereoFrame& frame,
 Pipeline& FrameProcessor::pipelineFor(const NodeSettings& settings) {
   if (!pipeline_) {
     pipeline_ = std::make_unique<Pipeline>(settings.pipeline);
+    pipeline_->setStream(true);
   } else if (revision_ != settings.revision) {
     pipeline_->setParams(settings.pipeline);
   }
