@@ -62,13 +62,15 @@ class Pipeline {
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }
   /// Confidence and sigma are estimated unless nobody wants them: they are empty then.
-  void setQuality(Quality quality);
+  void setQuality(Quality quality) { quality_ = quality; }
   /// The pairs to come follow one another before one camera: temporal.enabled averages what stands still. Otherwise
   /// each pair is one by itself.
   void setStream(bool stream);
-  /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values, the memory of the stream), for
-  /// this reason.
+  /// Forgets what was learnt from earlier frames: row alignment, range of 16-bit values, the memory of the stream.
+  /// reason: what TemporalReport::reset says of the next pair.
   void reset(const std::string& reason = "asked for");
+  /// Forgets the memory of the stream alone.
+  void resetStream(const std::string& reason);
 
  private:
   struct State;

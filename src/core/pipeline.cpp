@@ -153,8 +153,9 @@ struct Pipeline::State {
   int type = -1;
   ValueRange values;
   TemporalAverage average;
-  PipelineResult last;      ///< of the pair before in a stream
-  bool repeatable = false;  ///< a pair that is the same has the same result
+  PipelineResult last;       ///< of the pair before in a stream
+  bool last_counts = false;  ///< it is that of the images alone, and whole
+  Quality last_quality = Quality::kNone;
   RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
   CostVolume volume;
@@ -190,16 +191,13 @@ void Pipeline::setStream(bool stream) {
   stream_ = stream;
 }
 
-void Pipeline::setQuality(Quality quality) {
-  if (quality != quality_) state_->repeatable = false;
-  quality_ = quality;
-}
-
 void Pipeline::reset(const std::string& reason) {
   state_->row_alignment.reset();
   state_->values = {};
-  state_->average.reset(reason);
+  resetStream(reason);
 }
+
+void Pipeline::resetStream(const std::string& reason) { state_->average.reset(reason); }
 
 StereoPair Pipeline::prepare(const cv::Mat& left, const cv::Mat& right) {
   if (left.size() != state_->size || left.type() != state_->type) state_->values = {};
@@ -221,14 +219,20 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
     return result;
   }
   const TemporalAverage::Outcome outcome = state_->average.update(given);
-  result.temporal = {outcome.kept_share, !outcome.changed && state_->repeatable && external.empty(), outcome.reset};
+  const bool same = !outcome.changed && state_->last_counts && external.empty();
+  result.temporal = {outcome.kept_share, same && quality_ == state_->last_quality, outcome.reset};
   clock.done("temporal");
   if (result.temporal.repeated) return repeat(std::move(result));
-  state_->repeatable = false;
+  state_->last_counts = false;
   compute(given, external, cancel, clock, result);
-  state_->average.steady(state_->last.disparity, result.disparity);
+  if (same) {
+    state_->last.disparity.copyTo(result.disparity);  // only its quality was not known yet
+  } else {
+    state_->average.steady(state_->last.disparity, result.disparity);
+  }
   state_->last = copyOf(result);
-  state_->repeatable = external.empty() && !(cancel != nullptr && *cancel);
+  state_->last_counts = external.empty() && !(cancel != nullptr && *cancel);
+  state_->last_quality = quality_;
   return result;
 }
 
