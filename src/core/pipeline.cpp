@@ -132,13 +132,19 @@ SparseDisparity allSeeds(const PipelineResult& result) {
   return all;
 }
 
-/// Times one stage after another.
+/// Times one stage after another; one that works twice has one time.
 class Pipeline::StageClock {
  public:
   explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
   void done(const char* stage) {
     const auto now = Clock::now();
-    times_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    const auto known = std::find_if(times_.begin(), times_.end(), [&](const StageTime& t) { return t.stage == stage; });
+    if (known == times_.end()) {
+      times_.push_back({stage, ms});
+    } else {
+      known->ms += ms;
+    }
     start_ = now;
   }
 
