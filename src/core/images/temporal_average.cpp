@@ -7,12 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <numeric>
+#include <limits>
 
 #include <opencv2/imgproc.hpp>
 
 #include "images/colour.hpp"
-#include "images/image_quality.hpp"
+#include "images/view_change.hpp"
 #include "parallel.hpp"
 
 namespace fdp_stereo {
@@ -23,11 +23,8 @@ constexpr int kAges = kLongest + 1;
 constexpr int kPeriod = 8;          // pairs after which what is shown of a mean that is this long follows it
 constexpr int kWindow = 7;          // px, side of the window whose change is compared with the noise
 constexpr double kMaxChange = 2.5;  // of the variance of the noise there; more is no noise
-constexpr double kLeastNoise = 0.5, kMostNoise = 8.0;  // grey levels
-constexpr int kBlockPx = 16;                           // side of the blocks that tell whether the camera stands
-constexpr int kSubsteps = 8;                           // of a grey level, of changes
-constexpr float kRounding = 0.5F;                      // of what becomes whole
-constexpr int kLargestChange = 255;                    // beyond it all are alike
+constexpr int kBlockPx = 16;        // side of the blocks that tell whether the camera stands
+constexpr float kRounding = 0.5F;   // of what becomes whole
 
 /// Whether what is shown follows a mean of so many pairs: 1, 2, 3, 4, 6, 8, 12. Between these steps a still view is the
 /// same to the bit.
@@ -36,18 +33,23 @@ bool isStep(int age) {
   return powerOfTwo(age) || (age % 3 == 0 && powerOfTwo(age / 3));
 }
 
+/// Which means are followed by what is shown beside those at a step.
+struct Follow {
+  bool longest, all;
+};
+
 /// What the age of a pixel says, for every channel of a row.
 struct AgeRow {
   AgeRow(int cols, int count_per_pixel)
       : channels(count_per_pixel), weight(cols * count_per_pixel), follows(cols * count_per_pixel) {}
 
   /// Returns whether anything of the row follows its mean.
-  bool fill(const std::uint8_t* ages, int cols, bool longest_follow) {
+  bool fill(const std::uint8_t* ages, int cols, const Follow& follow) {
     std::array<float, kAges> weights{};
     std::array<std::uint8_t, kAges> steps{};
     for (int age = 1; age < kAges; ++age) {
       weights[age] = 1.0F / static_cast<float>(age);
-      steps[age] = (age < kLongest ? isStep(age) : longest_follow) ? 1 : 0;
+      steps[age] = follow.all || (age < kLongest ? isStep(age) : follow.longest) ? 1 : 0;
     }
     std::uint8_t any = 0;
     for (int x = 0, i = 0; x < cols; ++x) {
@@ -68,52 +70,39 @@ struct AgeRow {
 /// Shows the means that are followed, rounded; returns whether that changed anything.
 template <typename Value>
 bool showMeans(const float* means, const std::uint8_t* follows, int count, Value* shown) {
+  constexpr float kLargest = std::numeric_limits<Value>::max();
   int changes = 0;
   for (int i = 0; i < count; ++i) {
-    const auto value = follows[i] != 0 ? static_cast<Value>(means[i] + kRounding) : shown[i];
+    const auto mean = static_cast<Value>(std::min(means[i] + kRounding, kLargest));  // brighter light may pass it
+    const auto value = follows[i] != 0 ? mean : shown[i];
     changes += value != shown[i] ? 1 : 0;
     shown[i] = value;
   }
   return changes > 0;
 }
 
-/// Squares of the differences from the mean, in parts of a grey level.
-cv::Mat squaredChanges(const cv::Mat& grey, const cv::Mat& mean) {
-  cv::Mat squares(grey.size(), CV_16UC1);
-  parallelFor(grey.rows, [&](int y) {
-    const auto* now = grey.ptr<std::uint8_t>(y);
-    const auto* before = mean.ptr<float>(y);
-    auto* square = squares.ptr<std::uint16_t>(y);
-    for (int x = 0; x < grey.cols; ++x) {
-      const float difference = std::abs(static_cast<float>(now[x]) - before[x]) * kSubsteps;
-      const int change = std::min(static_cast<int>(difference + kRounding), kLargestChange);
-      square[x] = static_cast<std::uint16_t>(change * change);
-    }
-  });
-  return squares;
-}
-
-/// A value that half of the magnitudes do not exceed, from how often each occurs; they were rounded.
-double medianOf(const std::array<std::int64_t, 256>& counts) {
-  const auto total = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-  std::int64_t below = 0;
-  int value = 0;
-  while (value < 255 && 2 * (below + counts[value]) < total) below += counts[value++];
-  const double within = (0.5 * static_cast<double>(total) - static_cast<double>(below)) /
-                        static_cast<double>(std::max<std::int64_t>(counts[value], 1));
-  return value == 0 ? 0.5 * within : value - 0.5 + within;
+/// Sums of the squares in the window around every pixel.
+cv::Mat squaresAround(const cv::Mat& changes) {
+  cv::Mat squares, sums;
+  cv::multiply(changes, changes, squares, 1.0, CV_16U);
+  cv::boxFilter(squares, sums, CV_32S, {kWindow, kWindow}, {-1, -1}, false, cv::BORDER_REFLECT_101);
+  return sums;
 }
 
 /// Whether a block shows something whose motion would be seen.
-bool isTextured(const cv::Mat& grey, const cv::Rect& block, double noise) {
+bool isTextured(const cv::Mat& grey, const cv::Rect& block, const NoiseLevels& noise) {
   constexpr double kClear = 3.0;  // times the noise
   constexpr int kStep = 2;
-  std::int64_t sum = 0, count = 0;
+  std::int64_t sum = 0, values = 0, count = 0;
   for (int y = block.y; y < block.y + block.height; y += kStep) {
     const auto* row = grey.ptr<std::uint8_t>(y);
-    for (int x = block.x; x + kStep < block.x + block.width; ++x, ++count) sum += std::abs(row[x + kStep] - row[x]);
+    for (int x = block.x; x + kStep < block.x + block.width; ++x, ++count) {
+      sum += std::abs(row[x + kStep] - row[x]);
+      values += row[x];
+    }
   }
-  return static_cast<double>(sum) > kClear * noise * static_cast<double>(count);
+  const int average = static_cast<int>(values / std::max<std::int64_t>(count, 1));
+  return static_cast<double>(sum) > kClear * noise[noiseLevel(average)] * static_cast<double>(count);
 }
 
 }  // namespace
@@ -151,28 +140,23 @@ bool ViewAverage::fits(const ViewImages& view) const {
                     });
 }
 
-/// Standard deviation of the noise of one image, grey levels: what changes from pair to pair, at most about what the
-/// plainest places of the image show.
-double ViewAverage::measureNoise(const cv::Mat& grey) const {
-  constexpr double kMedianOfNormal = 0.6745;
-  constexpr double kCorrelated = 2.0;            // resampled noise is smooth
-  constexpr int kDarkest = 2, kBrightest = 253;  // values beyond are cut off, and their noise with them
-  std::array<std::int64_t, 256> counts{};
-  for (int y = 0; y < grey.rows; ++y) {
-    const auto* now = grey.ptr<std::uint8_t>(y);
-    const auto* before = last_grey_.ptr<std::uint8_t>(y);
-    for (int x = 0; x < grey.cols; ++x) {
-      if (before[x] < kDarkest || before[x] > kBrightest) continue;
-      ++counts[std::abs(now[x] - before[x])];
-    }
+/// Light that changes everywhere is no motion: the means follow it. Returns how much brighter the grey image is.
+double ViewAverage::followLight(const ViewImages& view) {
+  constexpr double kSteady = 0.002;  // of the brightness: less is not seen
+  double light = 1.0;
+  relit_ = false;
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const double ratio = brightnessRatio(view.images[i], planes_[i].mean);
+    if (std::abs(ratio - 1.0) < kSteady) continue;
+    planes_[i].mean *= ratio;
+    relit_ = true;
+    if (i == view.grey) light = ratio;
   }
-  const double change = medianOf(counts) / (kMedianOfNormal * std::sqrt(2.0));
-  const double seen = kCorrelated * measureQuality(grey).grain;
-  return std::clamp(std::min(change, seen), kLeastNoise, kMostNoise);
+  return light;
 }
 
 /// A camera that moves changes most of what has texture.
-bool ViewAverage::standsStill(const cv::Mat& grey, double noise) const {
+bool ViewAverage::standsStill(const cv::Mat& grey, const NoiseLevels& noise) const {
   constexpr int kOneOf = 4;  // textured blocks
   int textured = 0, standing = 0;
   for (int y = 0; y + kBlockPx <= grey.rows; y += kBlockPx) {
@@ -187,22 +171,25 @@ bool ViewAverage::standsStill(const cv::Mat& grey, double noise) const {
 }
 
 bool ViewAverage::compare(const ViewImages& view) {
+  const double light = followLight(view);
   const cv::Mat& grey = view.images[view.grey];
-  const double noise = measureNoise(grey);
-  const cv::Mat squares = squaredChanges(grey, planes_[view.grey].mean);
-  cv::Mat sums;
-  cv::boxFilter(squares, sums, CV_32S, {kWindow, kWindow}, {-1, -1}, false, cv::BORDER_REFLECT_101);
-  std::array<std::int32_t, kAges> limits{};
-  for (int age = 1; age < kAges; ++age) {
-    const double variance = noise * noise * kSubsteps * kSubsteps * (1.0 + 1.0 / age);
-    limits[age] = static_cast<std::int32_t>(kMaxChange * kWindow * kWindow * variance);
+  const cv::Mat changes = changesFrom(planes_[view.grey].mean, grey);
+  const NoiseLevels noise = measureNoise(grey, last_grey_, light);
+  const cv::Mat sums = squaresAround(changes);
+  std::array<std::array<std::int32_t, kAges>, noise.size()> limits{};
+  for (std::size_t level = 0; level < noise.size(); ++level) {
+    const double variance = noise[level] * noise[level] * kChangeSteps * kChangeSteps;
+    for (int age = 1; age < kAges; ++age) {
+      limits[level][age] = static_cast<std::int32_t>(kMaxChange * kWindow * kWindow * variance * (1.0 + 1.0 / age));
+    }
   }
   still_.create(grey.size(), CV_8UC1);
   parallelFor(grey.rows, [&](int y) {
     const auto* sum = sums.ptr<std::int32_t>(y);
+    const auto* value = grey.ptr<std::uint8_t>(y);
     const auto* age = ages_.ptr<std::uint8_t>(y);
     auto* still = still_.ptr<std::uint8_t>(y);
-    for (int x = 0; x < grey.cols; ++x) still[x] = sum[x] <= limits[age[x]] ? 255 : 0;
+    for (int x = 0; x < grey.cols; ++x) still[x] = sum[x] <= limits[noiseLevel(value[x])][age[x]] ? 255 : 0;
   });
   // A change that the window sees is wider than this.
   cv::morphologyEx(still_, still_, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8UC1));
@@ -212,11 +199,11 @@ bool ViewAverage::compare(const ViewImages& view) {
 template <typename Value>
 bool ViewAverage::average(const cv::Mat& image, Plane& plane) const {
   const int count = image.cols * image.channels();
-  const bool longest_follow = pairs_ % kPeriod == 0;
+  const Follow follow{pairs_ % kPeriod == 0, relit_};
   std::vector<std::uint8_t> changed(image.rows, 0);
   const auto makeRow = [&] { return AgeRow(image.cols, image.channels()); };
   parallelFor(image.rows, makeRow, [&](int y, AgeRow& row) {
-    const bool follows = row.fill(ages_.ptr<std::uint8_t>(y), image.cols, longest_follow);
+    const bool follows = row.fill(ages_.ptr<std::uint8_t>(y), image.cols, follow);
     const auto* now = image.ptr<Value>(y);
     auto* mean = plane.mean.ptr<float>(y);
     for (int i = 0; i < count; ++i) mean[i] += (static_cast<float>(now[i]) - mean[i]) * row.weight[i];
@@ -275,7 +262,7 @@ TemporalAverage::Outcome TemporalAverage::update(StereoPair& pair) {
   if (started_ && !(left_.fits(left) && right_.fits(right))) reset("images of another size or type");
   if (started_) {
     const bool left_stands = left_.compare(left), right_stands = right_.compare(right);
-    if (!(left_stands && right_stands)) reset("the camera moves");
+    if (!(left_stands && right_stands)) reset("the view changed");
   }
   if (!started_) {
     left_.start(left);

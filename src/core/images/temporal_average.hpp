@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fdp_stereo/types.hpp"
+#include "images/view_change.hpp"
 
 namespace fdp_stereo {
 
@@ -38,16 +39,17 @@ class ViewAverage {
   struct Plane {
     cv::Mat mean, shown;
   };
-  double measureNoise(const cv::Mat& grey) const;
-  bool standsStill(const cv::Mat& grey, double noise) const;
+  double followLight(const ViewImages& view);
+  bool standsStill(const cv::Mat& grey, const NoiseLevels& noise) const;
   template <typename Value>
   bool average(const cv::Mat& image, Plane& plane) const;
 
   std::vector<Plane> planes_;
-  cv::Mat last_grey_;
   std::int64_t pairs_ = 0;  ///< since start()
-  cv::Mat ages_;            ///< CV_8UC1: for how many pairs a pixel has stood still, from 1
-  cv::Mat still_;           ///< CV_8UC1, 255 where compare() found no change
+  bool relit_ = false;      ///< the light changed since the pair before
+  cv::Mat last_grey_;
+  cv::Mat ages_;   ///< CV_8UC1: for how many pairs a pixel has stood still, from 1
+  cv::Mat still_;  ///< CV_8UC1, 255 where compare() found no change
 };
 
 /// Averages both views of a stream.
