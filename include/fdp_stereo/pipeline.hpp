@@ -16,6 +16,7 @@ class Scaling;
 /// What one run tells of itself.
 struct PipelineStats {
   std::string feature_note;  ///< why another detector than the wanted one ran; empty otherwise
+  TemporalReport temporal;
   RowAlignment row_alignment;
   double propagated_share = 0.0;  ///< share of the pixels whose costs the seeds changed
   std::vector<double> energies;   ///< of the optimiser, per iteration
@@ -66,13 +67,23 @@ class Pipeline {
   /// left out; empty = none. They are neither matched nor seeds, have no disparity though holes are filled, and what
   /// they show has no influence on the others.
   void setMasks(const cv::Mat& left, const cv::Mat& right);
-  /// Forgets what was learnt from earlier frames (row alignment, range of 16-bit values).
-  void reset();
+  /// The pairs to come follow one another before one camera: temporal.enabled averages what stands still. Otherwise
+  /// each pair is one by itself.
+  void setStream(bool stream);
+  /// Forgets what was learnt from earlier frames: row alignment, range of 16-bit values, the memory of the stream.
+  /// reason: what TemporalReport::reset says of the next pair.
+  void reset(const std::string& reason = "asked for");
+  /// Forgets the memory of the stream alone.
+  void resetStream(const std::string& reason);
 
  private:
   struct State;
   struct Frame;
+  class StageClock;
   StereoPair prepare(const cv::Mat& left, const cv::Mat& right);
+  PipelineResult repeat(PipelineResult now) const;
+  void compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel, StageClock& clock,
+               PipelineResult& result);
   RowAlignment alignPair(const FeatureMatches& matches, int given_rows, Frame& frame);
   void buildSeeds(Frame& frame, Seeds external, PipelineResult& result);
   double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
@@ -86,6 +97,7 @@ class Pipeline {
   PipelineParams params_;
   OptimizerProgress progress_;
   Quality quality_ = Quality::kEstimated;
+  bool stream_ = false;
   std::unique_ptr<State> state_;
 };
 

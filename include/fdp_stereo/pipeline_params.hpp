@@ -21,6 +21,7 @@
 #include "fdp_stereo/semi_global.hpp"
 #include "fdp_stereo/sparse_disparity.hpp"
 #include "fdp_stereo/speckle_filter.hpp"
+#include "fdp_stereo/temporal.hpp"
 #include "fdp_stereo/weighted_median.hpp"
 #include "fdp_stereo/winner_takes_all.hpp"
 
@@ -32,6 +33,7 @@ struct PipelineParams {
   int threads = 0;              ///< 0 = all cores
   double scale = 1.0;           ///< of the sides of the images that are matched; the disparity has full size again
   double max_memory_mb = 4096;  ///< a pair that would need more is refused
+  TemporalParams temporal;
   FeatureMatchingParams feature_matching;
   RowAlignmentParams row_alignment;
   MatchingCostParams matching_cost;

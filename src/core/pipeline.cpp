@@ -19,6 +19,7 @@
 #include "images/blind_pixels.hpp"
 #include "images/colour.hpp"
 #include "images/cost_views.hpp"
+#include "images/temporal_average.hpp"
 #include "images/view_masks.hpp"
 #include "simd/simd.hpp"
 
@@ -28,21 +29,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSensorReachPx = 16;  ///< how far around a seed another sensor vouches for what the cameras do not see
-
-/// Times one stage after another.
-class StageClock {
- public:
-  explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
-  void done(const char* stage) {
-    const auto now = Clock::now();
-    times_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
-    start_ = now;
-  }
-
- private:
-  std::vector<StageTime>& times_;
-  Clock::time_point start_;
-};
 
 /// Uses a number of threads, OpenCV's among them, for as long as it lives. OpenCV has one number for the process.
 class ThreadScope {
@@ -111,6 +97,10 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
 
 constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
 
+bool equal(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && (a.empty() || cv::norm(a, b, cv::NORM_INF) == 0.0);
+}
+
 /// The edge of a black frame is none of the scene: without it, the picture goes on to the border.
 void extendPair(StereoPair& pair) {
   const auto extend = [](cv::Mat& image, cv::Mat& grey) {
@@ -132,6 +122,13 @@ void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::M
   dropUnexplained(blind, disparity);
 }
 
+/// A result whose maps the caller may change.
+PipelineResult copyOf(const PipelineResult& result) {
+  PipelineResult copy = result;
+  for (cv::Mat* map : {&copy.disparity, &copy.confidence, &copy.sigma}) *map = map->clone();
+  return copy;
+}
+
 }  // namespace
 
 SparseDisparity allSeeds(const PipelineResult& result) {
@@ -140,12 +137,37 @@ SparseDisparity allSeeds(const PipelineResult& result) {
   return all;
 }
 
+/// Times one stage after another; one that works twice has one time.
+class Pipeline::StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& times) : times_(times), start_(Clock::now()) {}
+  void done(const char* stage) {
+    const auto now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    const auto known = std::find_if(times_.begin(), times_.end(), [&](const StageTime& t) { return t.stage == stage; });
+    if (known == times_.end()) {
+      times_.push_back({stage, ms});
+    } else {
+      known->ms += ms;
+    }
+    start_ = now;
+  }
+
+ private:
+  std::vector<StageTime>& times_;
+  Clock::time_point start_;
+};
+
 /// What is kept from pair to pair.
 struct Pipeline::State {
   ViewMasks masks;  ///< of the images as given
   cv::Size size;    ///< of the last pair as it was given
   int type = -1;
   ValueRange values;
+  TemporalAverage average;
+  PipelineResult last;       ///< of the pair before in a stream
+  bool last_counts = false;  ///< it is that of the images alone, and whole
+  Quality last_quality = Quality::kNone;
   RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
   CostVolume volume;
@@ -174,14 +196,27 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 void Pipeline::setParams(const PipelineParams& params) {
   validate(params);
   params_ = params;
+  state_->average.reset("new parameters");
 }
 
-void Pipeline::reset() {
+void Pipeline::setStream(bool stream) {
+  if (stream != stream_) state_->average.reset("a stream begins");
+  stream_ = stream;
+}
+
+void Pipeline::reset(const std::string& reason) {
   state_->row_alignment.reset();
   state_->values = {};
+  resetStream(reason);
 }
 
-void Pipeline::setMasks(const cv::Mat& left, const cv::Mat& right) { state_->masks = {left.clone(), right.clone()}; }
+void Pipeline::resetStream(const std::string& reason) { state_->average.reset(reason); }
+
+void Pipeline::setMasks(const cv::Mat& left, const cv::Mat& right) {
+  if (equal(left, state_->masks.left) && equal(right, state_->masks.right)) return;
+  state_->masks = {left.clone(), right.clone()};
+  resetStream("new masks");
+}
 
 /// What lies under the masks is replaced by what is beside them: nothing depends on it.
 StereoPair Pipeline::prepare(const cv::Mat& left, const cv::Mat& right) {
@@ -198,9 +233,43 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   const ThreadScope threads(params_.threads);
   PipelineResult result;
   StageClock clock(result.times);
-
-  const StereoPair given = prepare(left, right);
+  StereoPair given = prepare(left, right);
   result.left = given.left;
+  clock.done("image_preparation");
+  if (!stream_ || !params_.temporal.enabled) {
+    compute(given, external, cancel, clock, result);
+    return result;
+  }
+  const TemporalAverage::Outcome outcome = state_->average.update(given);
+  const bool same = !outcome.changed && state_->last_counts && external.empty();
+  result.temporal = {outcome.kept_share, same && quality_ == state_->last_quality, outcome.reset};
+  clock.done("temporal");
+  if (result.temporal.repeated) return repeat(std::move(result));
+  state_->last_counts = false;
+  compute(given, external, cancel, clock, result);
+  if (same) {
+    state_->last.disparity.copyTo(result.disparity);  // only its quality was not known yet
+  } else {
+    state_->average.steady(state_->last.disparity, result.disparity);
+  }
+  state_->last = copyOf(result);
+  state_->last_counts = external.empty() && !(cancel != nullptr && *cancel);
+  state_->last_quality = quality_;
+  return result;
+}
+
+/// The result of the pair before, with what this pair alone tells.
+PipelineResult Pipeline::repeat(PipelineResult now) const {
+  PipelineResult result = copyOf(state_->last);
+  result.left = std::move(now.left);
+  result.temporal = std::move(now.temporal);
+  result.times = std::move(now.times);
+  return result;
+}
+
+/// All stages from the features on.
+void Pipeline::compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel,
+                       StageClock& clock, PipelineResult& result) {
   const Scaling scaling(given.left.size(), params_.scale);
   Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}};
   frame.masks = shrinkMasks(state_->masks, frame.pair.left.size());
@@ -235,7 +304,6 @@ PipelineResult Pipeline::run(const cv::Mat& left, const cv::Mat& right, const Se
   if (!scaling.identity()) restoreSize(scaling, frame.pair.left, given.left, result);
   if (!state_->masks.left.empty()) dropMasked({state_->masks.left, {}}, result.disparity);
   clock.done("refinement");
-  return result;
 }
 
 RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, Frame& frame) {

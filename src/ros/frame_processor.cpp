@@ -10,10 +10,13 @@
 #include "fdp_stereo/hidden_pixels.hpp"
 #include "fdp_stereo/io.hpp"
 #include "search_range.hpp"
+#include "stamps.hpp"
 #include "text.hpp"
 
 namespace fdp_stereo {
 namespace {
+
+constexpr char kJumpedBack[] = "the stamps jumped back";
 
 std::string describe(const cv::Mat& image) {
   return text(image.cols, " x ", image.rows, " px, ", image.depth() == CV_8U ? 8 : 16, " bit");
@@ -92,6 +95,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   const Seeds external = externalSeeds(
       {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
   Pipeline& pipeline = pipelineFor(settings);
+  followTime(frame.left->header.stamp);
   const bool quality = needsQuality(settings.node, wanted);
   pipeline.setQuality(quality ? Pipeline::Quality::kEstimated : Pipeline::Quality::kNone);
   const MaskPair masks = masks_ ? masks_(left.size()) : MaskPair();
@@ -147,7 +151,16 @@ Seeds FrameProcessor::externalSeeds(const SeedRequest& request, FrameReport& rep
 }
 
 void FrameProcessor::reset() {
-  if (pipeline_) pipeline_->reset();
+  if (pipeline_) pipeline_->reset(kJumpedBack);
+}
+
+/// What was seen long ago, or is yet to come, says nothing of now.
+void FrameProcessor::followTime(const ros::Time& stamp) {
+  constexpr double kLongestGap = 1.0;  // s
+  const double passed = last_stamp_.isZero() || stamp.isZero() ? 0.0 : secondsBetween(last_stamp_, stamp);
+  last_stamp_ = stamp;
+  if (passed < 0.0) pipeline_->reset(kJumpedBack);
+  if (passed > kLongestGap) pipeline_->resetStream("no pair for more than a second");
 }
 
 std::pair<cv::Mat, cv::Mat> FrameProcessor::decodePair(const StereoFrame& frame,
@@ -169,6 +182,7 @@ std::pair<cv::Mat, cv::Mat> FrameProcessor::decodePair(const StereoFrame& frame,
 Pipeline& FrameProcessor::pipelineFor(const NodeSettings& settings) {
   if (!pipeline_) {
     pipeline_ = std::make_unique<Pipeline>(settings.pipeline);
+    pipeline_->setStream(true);
   } else if (revision_ != settings.revision) {
     pipeline_->setParams(settings.pipeline);
   }

@@ -88,6 +88,7 @@ class FrameProcessor {
  private:
   std::pair<cv::Mat, cv::Mat> decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
   Pipeline& pipelineFor(const NodeSettings& settings);
+  void followTime(const ros::Time& stamp);
 
   Seeds externalSeeds(const SeedRequest& request, FrameReport& report) const;
   void fillReport(PipelineResult& result, FrameReport& report);
@@ -97,6 +98,7 @@ class FrameProcessor {
   MaskProvider masks_;
   std::unique_ptr<Pipeline> pipeline_;
   unsigned revision_ = 0;
+  ros::Time last_stamp_;
   RowAlignment told_rows_;  ///< whose warning is told as long as the offset is much the same
 };
 

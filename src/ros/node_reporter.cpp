@@ -55,6 +55,11 @@ void NodeReporter::recordSuccess(const StereoFrame& frame, FrameReport report, C
   status_.age_ms = secondsBetween(frame.left->header.stamp, ros::Time::now()) * 1e3;
   status_.apart_ms = secondsBetween(frame.left->header.stamp, frame.right->header.stamp) * 1e3;
   status_.revision = revision;
+  const std::string& reset = report.pipeline.temporal.reset;
+  if (!reset.empty()) {
+    ++status_.temporal_resets;
+    status_.last_temporal_reset = reset;
+  }
   status_.frame = std::move(report);
 }
 

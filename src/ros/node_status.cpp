@@ -132,6 +132,11 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.add("Seeds rejected", now.frame.rejected_seeds);
   diagnostics.add("Seeds of the first matching", now.frame.quasi_dense_seeds);
   diagnostics.addf("Pixels influenced by seeds (%)", "%.1f", 100.0 * now.frame.pipeline.propagated_share);
+  const TemporalReport& temporal = now.frame.pipeline.temporal;
+  diagnostics.addf("Pixels kept from earlier pairs (%)", "%.1f", 100.0 * temporal.kept_share);
+  diagnostics.add("Result of the pair before repeated", temporal.repeated ? "yes" : "no");
+  diagnostics.add("Pairs without memory of earlier ones", now.temporal_resets);
+  diagnostics.add("Why, the last time", now.last_temporal_reset);
   const RowAlignment& rows = now.frame.pipeline.row_alignment;
   diagnostics.addf("Row offset (px)", "%.2f", rows.offset_rms_px);
   diagnostics.add("Row alignment", rows.note);

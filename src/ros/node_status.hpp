@@ -34,11 +34,13 @@ struct NodeStatus {
   std::uint64_t over_rate = 0;  ///< left out by max_rate
   std::uint64_t too_old = 0;    ///< left out by max_age
   int waiting = 0;
-  double processing_ms = 0.0;  ///< of the last pair
-  double latency_ms = 0.0;     ///< from the arrival of the last pair to its publication
-  double age_ms = 0.0;         ///< from its stamp to its publication
-  double apart_ms = 0.0;       ///< from the stamp of its left image to that of its right one
-  unsigned revision = 0;       ///< of the parameters it was processed with
+  double processing_ms = 0.0;         ///< of the last pair
+  double latency_ms = 0.0;            ///< from the arrival of the last pair to its publication
+  double age_ms = 0.0;                ///< from its stamp to its publication
+  double apart_ms = 0.0;              ///< from the stamp of its left image to that of its right one
+  unsigned revision = 0;              ///< of the parameters it was processed with
+  std::uint64_t temporal_resets = 0;  ///< pairs that nothing of earlier ones was used for
+  std::string last_temporal_reset;    ///< why, the last time
   std::string last_error;
   bool error_is_current = false;  ///< the newest pair failed
   bool master_lost = false;

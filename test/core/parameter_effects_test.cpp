@@ -17,6 +17,7 @@ namespace {
 /// Parameters that change no result of these pairs, and why.
 const std::map<std::string, std::string> kExceptions = {
     {"pipeline.threads", "no result may depend on it"},
+    {"temporal.enabled", "of streams, not of one pair: temporal_test"},
     {"matching_cost.adapt", "good images stay as they are: cost_views_test"},
     {"pipeline.max_memory_mb", "refuses pairs that are larger than these: pipeline_test"},
 };

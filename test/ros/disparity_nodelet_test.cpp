@@ -15,6 +15,7 @@
 #include "conversions.hpp"
 #include "fdp_stereo/io.hpp"
 #include "fdp_stereo/pipeline.hpp"
+#include "frame_processor.hpp"
 #include "nodelet_graph.hpp"
 
 namespace fdp_stereo {
@@ -234,6 +235,32 @@ TEST(DisparityNodelet, ALiveEditTakesEffectAndIsWrittenBack) {
   EXPECT_FLOAT_EQ(after->max_disparity, 21.0F);
   ros::param::get(graph.nodeletName() + "/disparity_range", value);
   EXPECT_EQ(value, 20);
+}
+
+TEST(DisparityNodelet, AStreamIsThatOfTheProcessorToTheBitAndForgetsOverJumps) {
+  NodeletGraph graph("/stream");
+  ASSERT_TRUE(graph.process(goodMessages()));
+  NodeSettings settings;
+  settings.pipeline = loadPreset("fast");
+  settings.pipeline.search = {0, 32};
+  FrameProcessor processor({});
+  double time = 500.0;  // before the stamps of the pair above
+  for (int i = 0; i < 12; ++i) {
+    time += i == 8 ? 1.5 : i == 10 ? -20.0 : 0.05;
+    if (i == 6) {
+      graph.edit([](dynamic_reconfigure::Config& config) { ConfigTools::appendParameter(config, "speckle_size", 61); });
+      settings.pipeline.speckle_filter.max_size = 61;
+      ++settings.revision;
+    }
+    const Messages messages = test::noisyMessages(i, time);
+    graph.camera().publish(messages);
+    const auto got = graph.disparity().wait([&](const auto& d) { return d.header.stamp == ros::Time(time); });
+    ASSERT_TRUE(got) << i;
+    const FrameOutput expected = processor.process(messages.frame(), settings, {true});
+    const std::string& reset = expected.report.pipeline.temporal.reset;
+    EXPECT_EQ(reset.empty(), i != 0 && i != 6 && i != 8 && i != 10) << i << ": " << reset;
+    EXPECT_EQ(got->image.data, expected.disparity->image.data) << i;
+  }
 }
 
 TEST(DisparityNodelet, PresetThenParametersThenWhatWasUnknownIsSaid) {

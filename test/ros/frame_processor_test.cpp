@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -405,6 +406,71 @@ TEST(FrameProcessor, RefusesWhatCannotBeMatched) {
   const auto wide = run(goodMessages(), s);
   ASSERT_EQ(wide.report.warnings.size(), 1U);
   EXPECT_NE(wide.report.warnings[0].find("disparity_range = 1000"), std::string::npos);
+}
+
+/// A stream at 20 Hz that has run for a while, and what becomes of its next pair.
+class Stream {
+ public:
+  explicit Stream(NodeSettings s = settings()) : settings_(std::move(s)) {
+    for (int i = 0; i < 5; ++i) next(0.05);
+  }
+  FrameOutput next(double passed) {
+    time_ += passed;
+    last_ = test::noisyMessages(++number_, time_);
+    return processor_->process(last_.frame(), settings_, kAll);
+  }
+  /// Whether a pair is what it would be by itself.
+  void expectSingle(const FrameOutput& output, const std::string& reason) {
+    EXPECT_NE(output.report.pipeline.temporal.reset.find(reason), std::string::npos)
+        << reason << " in: " << output.report.pipeline.temporal.reset;
+    const FrameOutput single = run(last_, settings_);
+    EXPECT_EQ(output.disparity->image.data, single.disparity->image.data) << reason;
+    EXPECT_EQ(output.confidence->data, single.confidence->data) << reason;
+  }
+  NodeSettings& set() { return settings_; }
+  FrameProcessor& processor() { return *processor_; }
+
+ private:
+  NodeSettings settings_;
+  std::unique_ptr<FrameProcessor> processor_ = std::make_unique<FrameProcessor>(StereoTopics{});
+  Messages last_;
+  double time_ = 100.0;
+  int number_ = 0;
+};
+
+TEST(FrameProcessor, AStreamIsSteadied) {
+  Stream stream;
+  const FrameOutput output = stream.next(0.05);
+  EXPECT_EQ(output.report.pipeline.temporal.reset, "");
+  EXPECT_GT(output.report.pipeline.temporal.kept_share, 0.99);
+  EXPECT_EQ(stream.next(0.9).report.pipeline.temporal.reset, "") << "a slow camera";
+}
+
+TEST(FrameProcessor, TheFirstPairAfterATimeJumpIsThatOfASingleFrame) {
+  Stream stream;
+  stream.expectSingle(stream.next(-3.0), "jumped back");
+  EXPECT_EQ(stream.next(0.05).report.pipeline.temporal.reset, "");
+  stream.expectSingle(stream.next(1.1), "more than a second");
+  EXPECT_EQ(stream.next(0.05).report.pipeline.temporal.reset, "");
+  stream.expectSingle(stream.next(1e9), "more than a second");
+  EXPECT_EQ(stream.next(0.05).report.pipeline.temporal.reset, "");
+  stream.processor().reset();
+  stream.expectSingle(stream.next(0.05), "jumped back");
+}
+
+TEST(FrameProcessor, TheFirstPairWithNewParametersIsThatOfASingleFrame) {
+  Stream stream;
+  stream.set().pipeline.semi_global.p1 = 0.6;
+  ++stream.set().revision;
+  stream.expectSingle(stream.next(0.05), "new parameters");
+  EXPECT_EQ(stream.next(0.05).report.pipeline.temporal.reset, "");
+}
+
+TEST(FrameProcessor, WithoutTemporalEveryPairIsASingleFrame) {
+  NodeSettings s = settings();
+  s.pipeline.temporal.enabled = false;
+  Stream stream(s);
+  stream.expectSingle(stream.next(0.05), "");
 }
 
 }  // namespace

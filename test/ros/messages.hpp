@@ -109,4 +109,15 @@ inline Messages goodMessages(int width = 160, int height = 120) {
   return messages;
 }
 
+/// The same with the noise of a sensor, another one for every `number`.
+inline Messages noisyMessages(int number, double seconds) {
+  Messages messages = goodMessages();
+  cv::RNG random(static_cast<std::uint64_t>(number) + 1);
+  for (sensor_msgs::Image* image : {&messages.left, &messages.right}) {
+    for (std::uint8_t& value : image->data) value = cv::saturate_cast<std::uint8_t>(value + random.gaussian(3.0));
+  }
+  messages.stamp(ros::Time(seconds));
+  return messages;
+}
+
 }  // namespace fdp_stereo::test

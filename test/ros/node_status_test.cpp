@@ -146,5 +146,16 @@ TEST(LogThrottle, BoundsTextsThatAlwaysDiffer) {
   EXPECT_TRUE(throttle.allow("later", start + std::chrono::seconds(10)));
 }
 
+TEST_F(Status, TheMemoryOfTheStreamIsTold) {
+  now_.frame.pipeline.temporal.kept_share = 0.875;
+  now_.frame.pipeline.temporal.repeated = true;
+  now_.temporal_resets = 3;
+  now_.last_temporal_reset = "the view changed";
+  EXPECT_EQ(value("Pixels kept from earlier pairs (%)"), "87.5");
+  EXPECT_EQ(value("Result of the pair before repeated"), "yes");
+  EXPECT_EQ(value("Pairs without memory of earlier ones"), "3");
+  EXPECT_EQ(value("Why, the last time"), "the view changed");
+}
+
 }  // namespace
 }  // namespace fdp_stereo

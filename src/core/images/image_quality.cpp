@@ -62,14 +62,16 @@ ImageQuality measureQuality(const cv::Mat& grey) {
   if (fine.empty()) return {};
   std::vector<double> sorted = coarse;
   const double strong = quantile(sorted, 0.9), usual = quantile(sorted, 0.5);
-  if (usual <= 0.0) return {};
+  sorted = fine;
+  const double grain = quantile(sorted, 0.2);
+  if (usual <= 0.0) return {0.0, 1.0, 1.0, grain};
   double strong_fine = 0.0, strong_coarse = 0.0;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     if (coarse[i] < strong) continue;
     strong_fine += fine[i];
     strong_coarse += coarse[i];
   }
-  return {quantile(fine, 0.2) / usual, quantile(ratio, 0.5), strong_fine / strong_coarse};
+  return {grain / usual, quantile(ratio, 0.5), strong_fine / strong_coarse, grain};
 }
 
 }  // namespace fdp_stereo

@@ -60,6 +60,10 @@ void addPipeline(ParamList& list, PipelineParams& p) {
       .step = TuningStep::kSearch;
   list.add("max_memory_mb", p.max_memory_mb, 64, 64000, "MB", "A pair that would need more memory is refused.",
            "max_memory_mb");
+  list.stage("temporal");
+  list.add("enabled", p.temporal.enabled,
+           "In a stream, average the images where they stand still, so that the disparity does not flicker there.")
+      .step = TuningStep::kFilters;
 }
 
 void addFeatureMatching(ParamList& list, FeatureMatchingParams& p) {
