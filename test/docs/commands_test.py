@@ -46,17 +46,21 @@ class CommandsTest(unittest.TestCase):
                         self.assertTrue(os.access(os.path.join(ROOT, program), os.X_OK))
 
     def test_topics_and_parameters_of_the_node_are_described(self):
-        with open(os.path.join(ROOT, "docs", "nodes.md")) as file:
-            page = file.read()
+        page = ""
+        for name in ("nodes.md", "points.md"):
+            with open(os.path.join(ROOT, "docs", name)) as file:
+                page += file.read()
         names = set()
-        for source in ("disparity_nodelet.cpp", "output_topics.cpp", "seed_sources.cpp", "params_ros.cpp"):
+        for source in ("disparity_nodelet.cpp", "output_topics.cpp", "seed_sources.cpp", "node_params.cpp",
+                       "start_params.hpp", "points_nodelet.cpp", "point_params.cpp"):
             with open(os.path.join(ROOT, "src", "ros", source)) as file:
                 text = file.read()
             names.update(re.findall(r'(?:advertise(?:Camera|Image)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
-            names.update(re.findall(r'(?:param(?:<[^>]+>)?|period)\("(\w+)"', text))
-            if source == "params_ros.cpp":
+            names.update(re.findall(r'(?:param(?:<[^>]+>)?|period|reader\.read)\("(\w+)"', text))
+            if source == "node_params.cpp":
                 names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)",\s*TuningStep::', text, flags=re.S))
-        self.assertLessEqual({"disparity", "left/camera_info", "seeds/depth", "queue_size", "max_rate", "seeds_wait"}, names)
+        self.assertLessEqual({"disparity", "left/camera_info", "seeds/depth", "queue_size", "max_rate", "seeds_wait",
+                              "free_space", "points_decimation"}, names)
         for name in sorted(names):
             with self.subTest(name=name):
                 self.assertRegex(page, "`~?%s`" % name)
