@@ -51,8 +51,8 @@ TEST(BlackFrame, ThePictureGoesOnUnderIt) {
     for (int x = 0; x < 5; ++x) firsts.push_back(extended.at<cv::Vec3b>(y, x)[0]);
     return firsts;
   };
-  EXPECT_EQ(row(0), (std::vector<int>{1, 1, 1, 4, 4})) << "as the nearest row";
-  EXPECT_EQ(row(1), (std::vector<int>{1, 1, 1, 4, 4}));
+  EXPECT_EQ(row(0), (std::vector<int>{1, 4, 1, 4, 1})) << "as the nearest row";
+  EXPECT_EQ(row(1), (std::vector<int>{1, 4, 1, 4, 1}));
   EXPECT_EQ(row(2), (std::vector<int>{7, 7, 7, 8, 8}));
   EXPECT_EQ(image.at<cv::Vec3b>(0, 0)[0], 0) << "the image itself is not touched";
   EXPECT_EQ(extendUnder(cv::Mat(), image).data, image.data);

@@ -30,7 +30,7 @@ void markRay(const cv::Mat& black, int x, int y, int dx, int dy, cv::Mat& reache
   }
 }
 
-/// Each masked pixel becomes the nearest one of the row that is not; false where there is none.
+/// Mirrors the row at the nearest pixel that is not masked; false where there is none.
 bool extendRow(const std::uint8_t* masked, std::size_t bytes, int width, std::uint8_t* row) {
   std::vector<int> source(width);
   for (int x = 0, before = -1; x < width; ++x) source[x] = before = masked[x] == 0 ? x : before;
@@ -40,7 +40,9 @@ bool extendRow(const std::uint8_t* masked, std::size_t bytes, int width, std::ui
   }
   if (source[0] < 0) return false;
   for (int x = 0; x < width; ++x) {
-    if (source[x] != x) std::copy_n(row + source[x] * bytes, bytes, row + x * bytes);
+    const int mirrored = std::clamp(2 * source[x] - x, 0, width - 1);
+    const int from = masked[mirrored] == 0 ? mirrored : source[x];
+    if (from != x) std::copy_n(row + from * bytes, bytes, row + x * bytes);
   }
   return true;
 }

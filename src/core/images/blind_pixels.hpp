@@ -15,8 +15,9 @@ cv::Mat blindPixels(const cv::Mat& grey);
 /// its row or column through black ones alone. Empty where there is next to none. CV_8UC1.
 cv::Mat blackFrame(const cv::Mat& grey);
 
-/// Goes on with the picture under a mask: its pixels become the nearest ones of their row without mask, rows without
-/// such the nearest row with one. A new image; `image` itself where the mask is empty.
+/// Goes on with the picture under a mask: its pixels become those of their row mirrored at the nearest one without mask
+/// (that one itself where the mirror image is masked too), rows without such the nearest row with one. A new image;
+/// `image` itself where the mask is empty.
 cv::Mat extendUnder(const cv::Mat& mask, const cv::Mat& image);
 
 /// Keeps the disparity (CV_32FC1) of blind pixels only where the seen ones beside them in their row explain it: it must

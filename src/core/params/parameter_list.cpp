@@ -215,8 +215,7 @@ void addPostProcessing(ParamList& list, PipelineParams& p) {
       TuningStep::kFilters;
   list.add("max_size", p.hole_filling.max_size, 0, 100000, "px", "Holes of more pixels stay; 0 fills all of them.");
   list.stage("weighted_median");
-  list.add("radius", p.weighted_median.radius, 0, 7, "px", "Radius of the window of the weighted median; 0 is off.")
-      .step = TuningStep::kFilters;
+  list.add("radius", p.weighted_median.radius, 0, 7, "px", "Radius of the window of the weighted median; 0 is off.");
   list.add("gamma", p.weighted_median.gamma, 0.0, 100.0, "grey levels",
            "Colour difference at which a neighbour's weight falls to 1/e; 0 is the plain median.");
   list.stage("disparity_smoothing");
