@@ -217,7 +217,7 @@ bool looksSwapped(const cv::Mat& left, const cv::Mat& right, const PipelineParam
 
 cv::Mat readMask(const std::string& path, cv::Size size) {
   if (path.empty()) return {};
-  const cv::Mat mask = toMask(readImage(path));
+  cv::Mat mask = toMask(readImage(path));
   if (mask.size() == size) return mask;
   throw std::runtime_error(path + ": a mask of " + std::to_string(mask.cols) + " x " + std::to_string(mask.rows) +
                            " px, but the image has " + std::to_string(size.width) + " x " +
