@@ -166,7 +166,8 @@ inline Bytes lookUp(const CensusTable& table, const Bytes& index) {
   return reinterpret_cast<Bytes>(_mm256_blendv_epi8(_mm256_blendv_epi8(quarter(0), quarter(1), bit4),
                                                     _mm256_blendv_epi8(quarter(2), quarter(3), bit4), bit5));
 #elif defined(__ARM_NEON) && defined(__aarch64__)
-  return vqtbl4q_u8(vld1q_u8_x4(table.data()), index);
+  const std::uint8_t* t = table.data();
+  return vqtbl4q_u8({{vld1q_u8(t), vld1q_u8(t + 16), vld1q_u8(t + 32), vld1q_u8(t + 48)}}, index);
 #else
   Bytes values;
   for (int i = 0; i < kByteLanes; ++i) values[i] = table[index[i]];
