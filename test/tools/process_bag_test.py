@@ -370,8 +370,9 @@ class ProcessBagTest(unittest.TestCase):
         self.assertRegex(err, r"warning \(3 pairs\): .*frame_id 'right' differs")
 
     def test_an_interrupted_run_leaves_nothing(self):
-        self.write_messages(frames=200)
-        process = subprocess.Popen([os.path.join(BIN, "process_bag"), self.input, self.output], stdin=subprocess.DEVNULL)
+        self.write_messages(frames=20)
+        process = subprocess.Popen([os.path.join(BIN, "process_bag"), self.input, self.output, "--preset", "accurate",
+                                    "--set", "local_expansion.iterations=1000"], stdin=subprocess.DEVNULL)
         for _ in range(200):
             if len(os.listdir(self.folder.name)) > 1:
                 break
