@@ -372,7 +372,7 @@ class ProcessBagTest(unittest.TestCase):
     def test_an_interrupted_run_leaves_nothing(self):
         self.write_messages(frames=20)
         process = subprocess.Popen([os.path.join(BIN, "process_bag"), self.input, self.output, "--preset", "accurate",
-                                    "--set", "local_expansion.iterations=1000"], stdin=subprocess.DEVNULL)
+                                    "--set", "temporal.enabled=false"], stdin=subprocess.DEVNULL)
         for _ in range(200):
             if len(os.listdir(self.folder.name)) > 1:
                 break
