@@ -12,8 +12,6 @@ enum class PropagationForm { kWindow, kSurface };
 
 /// Stage 6: feature disparity propagation (paper 3.3, algorithm 1, eq. 11).
 struct DisparityPropagationParams {
-  bool enabled = true;
-  bool image_seeds = false;  ///< spread SeedSource::kFeature too, not only other sensors' seeds
   PropagationForm form = PropagationForm::kSurface;
   int window = 5;          ///< kWindow: W_p is window x window px, odd
   double gamma = 10.0;     ///< eq. (11), grey levels: kWindow: of |dI| from the seed; kSurface: per step along the way

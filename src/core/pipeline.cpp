@@ -53,12 +53,8 @@ class ThreadScope {
   int before_, opencv_before_;
 };
 
-bool wantsQuasiDense(const PipelineParams& params) {
-  return params.disparity_propagation.enabled && params.quasi_dense.enabled;
-}
-
 bool needsSemiGlobal(const PipelineParams& params) {
-  return params.optimizer == OptimizerType::kSemiGlobal || wantsQuasiDense(params) ||
+  return params.optimizer == OptimizerType::kSemiGlobal || params.quasi_dense.enabled ||
          (params.optimizer == OptimizerType::kLocalExpansion &&
           params.local_expansion.initialization == PlaneInitialization::kSemiGlobal);
 }
@@ -79,7 +75,7 @@ double bytesBeside(const PipelineParams& params) {
     bytes = std::max(bytes, bytesPerCost(params.local_expansion));
   }
   return std::max(bytes,
-                  wantsQuasiDense(params) ? SemiGlobalMatcher::kBytesPerCost / params.quasi_dense.row_step : 0.0);
+                  params.quasi_dense.enabled ? SemiGlobalMatcher::kBytesPerCost / params.quasi_dense.row_step : 0.0);
 }
 
 void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange search) {
@@ -120,6 +116,11 @@ void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::M
   filterSpeckles(disparity, speckles);
   guessed.copyTo(disparity, blind);
   dropUnexplained(blind, disparity);
+}
+
+void dropFeatures(Seeds& seeds) {
+  const auto is_feature = [](const Seed& seed) { return seed.source == SeedSource::kFeature; };
+  seeds.erase(std::remove_if(seeds.begin(), seeds.end(), is_feature), seeds.end());
 }
 
 /// A result whose maps the caller may change.
@@ -323,10 +324,13 @@ RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, 
 void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) {
   dropMasked({frame.masks.left, {}}, external);  // another sensor sees behind what hides it from the right view
 
-  const FeatureMatches aligned = alignMatches(result.matches, result.row_alignment.model);
+  const bool features = params_.sparse_disparity.features;
+  FeatureMatches aligned;  // they vouch for the seeds of other sensors too
+  if (features || !external.empty()) aligned = alignMatches(result.matches, result.row_alignment.model);
   SparseDisparity sparse = buildSparseDisparity(aligned, external, frame.pair, frame.search, params_.sparse_disparity);
   result.seeds = std::move(sparse.seeds);
   result.rejected_seeds = std::move(sparse.rejected);
+  if (!features) dropFeatures(result.seeds);
   cv::Mat buffer;
   frame.guide = eightBitGrey(frame.pair.left, frame.pair.left_grey, buffer);
   for (const Seed& seed : result.seeds) {  // another sensor sees where the cameras do not
@@ -334,7 +338,7 @@ void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) 
     cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);
   }
   if (!frame.masks.left.empty()) frame.blind.setTo(255, frame.masks.left);
-  if (!wantsQuasiDense(params_)) return;
+  if (!params_.quasi_dense.enabled) return;
   result.quasi_dense_seeds =
       quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
   dropMasked(frame.masks, result.quasi_dense_seeds);
@@ -343,13 +347,12 @@ void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) 
 /// Spreads the seeds in the costs of a view; returns the share of the pixels whose costs they changed.
 double Pipeline::spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
                              CostVolume& volume) const {
-  if (!params_.disparity_propagation.enabled) return 0.0;
   const auto spread = [&](const Seeds& seeds, const DisparityPropagationParams& params) {
     return mirrored ? propagateDisparity(mirrorSeeds(seeds, view.cols), view, params, axis, volume)
                     : propagateDisparity(seeds, view, params, axis, volume);
   };
   const double share = spread(result.seeds, params_.disparity_propagation);
-  if (!wantsQuasiDense(params_)) return share;
+  if (!params_.quasi_dense.enabled) return share;
   return std::max(share, spread(result.quasi_dense_seeds, surfacesOf(params_.quasi_dense)));
 }
 

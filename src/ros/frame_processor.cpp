@@ -143,9 +143,6 @@ void FrameProcessor::fillReport(PipelineResult& result, FrameReport& report) {
 Seeds FrameProcessor::externalSeeds(const SeedRequest& request, FrameReport& report) const {
   if (!seeds_) return {};
   Seeds seeds = seeds_(request);
-  if (!seeds.empty() && !request.settings.pipeline.disparity_propagation.enabled) {
-    report.warnings.push_back("seeds arrive but disparity_propagation_enabled is false: they have little effect");
-  }
   report.external_seeds = seeds.size();
   return seeds;
 }

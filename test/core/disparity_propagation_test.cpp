@@ -3,6 +3,7 @@
 #include "fdp_stereo/disparity_propagation.hpp"
 
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <stdexcept>
 #include <tuple>
@@ -31,7 +32,6 @@ CostVolume constantVolume(cv::Size size, DisparityRange range, CostVolume::Depth
 
 DisparityPropagationParams windowParams(int window, double gamma) {
   DisparityPropagationParams params;
-  params.image_seeds = true;
   params.form = PropagationForm::kWindow;
   params.window = window;
   params.gamma = gamma;
@@ -116,24 +116,29 @@ TEST(DisparityPropagation, RejectsWhatDoesNotFit) {
   EXPECT_THROW(propagateDisparity({}, left, windowParams(5, 0.0), volume), std::invalid_argument);
 }
 
-TEST(DisparityPropagation, ImageSeedsCanStayOut) {
+TEST(DisparityPropagation, PassesOverSeedsThatAreNoNumbers) {
   const cv::Mat left(20, 20, CV_8UC1, cv::Scalar(7));
-  Seed image = seedAt(10, 10, 2);
-  Seed external = image;
-  external.source = SeedSource::kPoints;
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInf = std::numeric_limits<float>::infinity();
   for (const PropagationForm form : {PropagationForm::kWindow, PropagationForm::kSurface}) {
     DisparityPropagationParams params;
     params.form = form;
-    params.image_seeds = false;
-    CostVolume volume = constantVolume(left.size(), {0, 5}, CostVolume::Depth::kU8, 100);
-    EXPECT_EQ(propagateDisparity({image}, left, params, volume), 0.0);
-    EXPECT_GT(propagateDisparity({external}, left, params, volume), 0.0);
+    const Seed good = seedAt(10, 10, 2);
+    CostVolume expected = constantVolume(left.size(), {0, 5}, CostVolume::Depth::kU8, 100);
+    CostVolume volume = expected;
+    propagateDisparity({good}, left, params, expected);
+    Seed distrusted = good;
+    distrusted.trust = kNaN;
+    const Seeds seeds = {seedAt(10, 10, kNaN), seedAt(kNaN, 10, 2),   seedAt(10, kInf, 2), good,
+                         seedAt(10, 10, kInf), seedAt(10, 10, -kInf), distrusted};
+    propagateDisparity(seeds, left, params, volume);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(volume.raw(10, 10, i), expected.raw(10, 10, i));
+    EXPECT_EQ(propagateDisparity({distrusted}, left, params, volume), 0.0);
   }
 }
 
 DisparityPropagationParams surfaceParams() {
   DisparityPropagationParams params;
-  params.image_seeds = true;
   params.form = PropagationForm::kSurface;
   return params;
 }

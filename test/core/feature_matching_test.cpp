@@ -112,6 +112,12 @@ TEST_P(EachDetector, NothingToMatchIsNoError) {
   }
 }
 
+TEST_P(EachDetector, FeaturesAreLimited) {
+  FeatureMatchingParams params = paramsOf(GetParam());
+  params.max_features = 10;  // far fewer than there are cells of the image
+  EXPECT_LE(matchFeatures(shifted(11.3, 0.0), {0, 32}, params).matches.size(), 10U);
+}
+
 TEST_P(EachDetector, RepeatsItself) {
   const StereoPair pair = shifted(9.0, 0.2);
   const FeatureMatches once = matchFeatures(pair, {0, 32}, paramsOf(GetParam())).matches;

@@ -102,7 +102,7 @@ std::vector<PipelineParams> setups() {
   PipelineParams setup;
   setup.search = {0, 24};
   all.push_back(setup);
-  setup.disparity_propagation.image_seeds = true;
+  setup.sparse_disparity.features = true;
   setup.disparity_propagation.form = PropagationForm::kWindow;
   setup.feature_matching.detector = FeatureDetector::kSift;
   setup.optimizer = OptimizerType::kWinnerTakesAll;

@@ -90,13 +90,13 @@ TEST(QuasiDense, SeedsAreRightAndLieOnTheirGrid) {
   EXPECT_GT(result.propagated_share, 0.9);
 }
 
-TEST(QuasiDense, IsPartOfThePropagation) {
+TEST(QuasiDense, EachSourceOfSeedsHasItsSwitch) {
   const reference::RenderedPair pair = reference::renderPair(60, 100, 6, 15, 5);
   PipelineParams params = fastParams();
-  params.disparity_propagation.enabled = false;
-  EXPECT_TRUE(Pipeline(params).run(pair.left, pair.right).quasi_dense_seeds.empty());
-  params = fastParams();
+  EXPECT_TRUE(Pipeline(params).run(pair.left, pair.right).seeds.empty());
+  params.sparse_disparity.features = true;
   params.quasi_dense.enabled = false;
+  EXPECT_FALSE(Pipeline(params).run(pair.left, pair.right).seeds.empty());
   EXPECT_TRUE(Pipeline(params).run(pair.left, pair.right).quasi_dense_seeds.empty());
 }
 
@@ -162,9 +162,8 @@ TEST(QuasiDense, LocalExpansionSpreadsSeedsInItsOwnVolumes) {
   const cv::Mat off = cv::abs(result.disparity(seen) - 6.5F) > 0.5F;
   EXPECT_LT(cv::countNonZero(off), seen.area() / 20);
   EXPECT_GT(cv::countNonZero(result.confidence(seen) > 0.0F), seen.area() * 9 / 10);
-  params.disparity_propagation.enabled = false;
-  const PipelineResult without = Pipeline(params).run(blank, blank, seeds);
-  EXPECT_GT(cv::countNonZero(cv::abs(without.disparity(seen) - 6.5F) > 0.5F), seen.area() / 2);
+  const PipelineResult without = Pipeline(params).run(blank, blank);
+  EXPECT_LT(cv::countNonZero(cv::abs(without.disparity(seen) - 6.5F) < 0.5F), seen.area() / 2);
 }
 
 TEST(QuasiDense, ThreadsGiveTheSameBits) {

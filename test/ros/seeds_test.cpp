@@ -91,7 +91,7 @@ class SeedTopics : public ::testing::Test {
 
   LogLines log_;
   Inbox<diagnostic_msgs::DiagnosticArray> diagnostics_{ros::NodeHandle(), "/diagnostics"};
-  NodeletGraph graph_{"/fused", {{"disparity_propagation_enabled", true}}};
+  NodeletGraph graph_{"/fused"};
   ros::Publisher points_, depth_, depth_info_, disparity_, tf_;
 };
 

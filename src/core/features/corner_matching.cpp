@@ -61,7 +61,9 @@ struct Corners {
   std::vector<int> row_begin;  // first index of each row; one more entry than rows
 };
 
-/// The strongest corners of each cell, sorted by (y, x).
+bool stronger(const cv::KeyPoint* a, const cv::KeyPoint* b) { return a->response > b->response; }
+
+/// The strongest corners of each cell, and of those the strongest `max_features`, sorted by (y, x).
 std::vector<cv::Point> findCorners(const cv::Mat& grey, int max_features) {
   std::vector<cv::KeyPoint> keypoints;
   cv::FAST(grey, keypoints, kFastThreshold, true);
@@ -76,12 +78,17 @@ std::vector<cv::Point> findCorners(const cv::Mat& grey, int max_features) {
     if (inside) cells[static_cast<std::size_t>(y / kCellPx) * columns + x / kCellPx].push_back(&k);
   }
   const std::size_t per_cell = std::max<std::size_t>(1, max_features / cells.size());
-  std::vector<cv::Point> points;
+  std::vector<const cv::KeyPoint*> kept;
   for (auto& cell : cells) {
-    std::stable_sort(cell.begin(), cell.end(), [](const auto* a, const auto* b) { return a->response > b->response; });
+    std::stable_sort(cell.begin(), cell.end(), stronger);
     if (cell.size() > per_cell) cell.resize(per_cell);
-    for (const cv::KeyPoint* k : cell) points.emplace_back(k->pt);
+    kept.insert(kept.end(), cell.begin(), cell.end());
   }
+  std::stable_sort(kept.begin(), kept.end(), stronger);
+  if (kept.size() > static_cast<std::size_t>(max_features)) kept.resize(max_features);
+  std::vector<cv::Point> points;
+  points.reserve(kept.size());
+  for (const cv::KeyPoint* k : kept) points.emplace_back(k->pt);
   std::sort(points.begin(), points.end(),
             [](cv::Point a, cv::Point b) { return std::make_pair(a.y, a.x) < std::make_pair(b.y, b.x); });
   return points;

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
+#include "arguments.hpp"
 #include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
-namespace {
-
-void requireMap(const cv::Mat& map) {
-  if (map.empty() || map.type() != CV_32FC1) throw std::invalid_argument("a map must be CV_32FC1 and have pixels");
-}
-
-}  // namespace
+namespace {}  // namespace
 
 cv::Mat noneMask(const cv::Mat& map) {
   // Not map != map: OpenCV compares four values at once with an instruction for which NaN differs from nothing.
@@ -22,7 +16,7 @@ cv::Mat noneMask(const cv::Mat& map) {
 }
 
 cv::Mat colorize(const cv::Mat& disparity, DisparityRange range) {
-  requireMap(disparity);
+  requireMap(disparity, "picture of a disparity");
   cv::Mat grey(disparity.size(), CV_8UC1);
   const float span = static_cast<float>(std::max(1, range.count - 1));
   for (int y = 0; y < grey.rows; ++y) {
@@ -39,7 +33,7 @@ cv::Mat colorize(const cv::Mat& disparity, DisparityRange range) {
 }
 
 cv::Mat confidenceToGrey(const cv::Mat& confidence) {
-  requireMap(confidence);
+  requireMap(confidence, "picture of a confidence");
   cv::Mat grey;
   confidence.convertTo(grey, CV_8U, 255.0);
   grey.setTo(0, noneMask(confidence));

@@ -119,13 +119,11 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
 
 void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagationParams& propagation) {
   list.stage("sparse_disparity");
+  list.add("features", sparse.features, "Make seeds of the feature matches.");
   list.add("reject_outliers", sparse.reject_outliers, "Drop seeds that contradict their neighbours.");
   list.add("max_deviation_px", sparse.max_deviation_px, 0.0, 2.0, "px",
            "Matches are rejected if small windows around them find disparities that differ by more on the mean.");
   list.stage("disparity_propagation");
-  list.add("enabled", propagation.enabled, "Lower the costs near the seeds (algorithm 1).");
-  list.add("image_seeds", propagation.image_seeds,
-           "Spread the seeds that come from the images too, not only those of other sensors.");
   list.add("form", propagation.form, {"window", "surface"},
            "Spread one disparity over a window as published, or a slanted surface.");
   list.add("window", propagation.window, 1, 51, "px", "Form window: side of the window W_p, odd.");
@@ -138,9 +136,8 @@ void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagati
 
 void addQuasiDense(ParamList& list, QuasiDenseParams& p) {
   list.stage("quasi_dense");
-  list.add("enabled", p.enabled,
-           "Match some rows roughly first and spread what is found along surfaces; only with disparity_propagation.")
-      .step = TuningStep::kSeeds;
+  list.add("enabled", p.enabled, "Match some rows roughly first and spread what is found along surfaces.").step =
+      TuningStep::kSeeds;
   list.add("row_step", p.row_step, 1, 16, "px", "Every so many rows are matched; smaller costs time.");
   list.add("spacing_px", p.spacing_px, 1, 64, "px", "Distance of the seeds that are taken from the rows.");
   list.add("strength", p.strength, 0.0, 1.0, "",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arguments.hpp"
 #include "parallel.hpp"
 #include "simd/disparity_smoothing_kernels.hpp"
 
@@ -81,6 +82,8 @@ struct Smoother {
 }  // namespace
 
 void smoothDisparity(cv::Mat& disparity, const cv::Mat& left, const DisparitySmoothingParams& params) {
+  requireMap(disparity, "disparity smoothing");
+  requireImage(left, disparity.size(), "disparity smoothing");
   if (params.radius <= 0) return;
   const auto difference = static_cast<float>(params.max_difference_px);
   const auto gamma = static_cast<float>(params.gamma * left.channels());

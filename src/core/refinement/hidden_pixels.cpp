@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fdp_stereo/hidden_pixels.hpp"
 
+#include "arguments.hpp"
 #include "fdp_stereo/types.hpp"
 #include "parallel.hpp"
 
 namespace fdp_stereo {
 
 void dropHidden(cv::Mat& disparity) {
+  requireMap(disparity, "pixels seen by both views");
   const auto last = static_cast<float>(disparity.cols - 1);
   parallelFor(disparity.rows, [&](int y) {
     auto* row = disparity.ptr<float>(y);

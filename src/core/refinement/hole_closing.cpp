@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "arguments.hpp"
 #include "parallel.hpp"
 
 namespace fdp_stereo {
@@ -62,6 +63,7 @@ float surfaceIn(const cv::Mat& disparity, cv::Rect window, double needed) {
 }  // namespace
 
 cv::Mat closeHoles(cv::Mat& disparity) {
+  requireMap(disparity, "hole closing");
   const cv::Mat known = disparity.clone();
   cv::Mat closed = cv::Mat::zeros(disparity.size(), CV_8UC1);
   const auto last = static_cast<float>(disparity.cols - 1);

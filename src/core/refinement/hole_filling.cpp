@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
+#include "arguments.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -57,6 +58,7 @@ cv::Mat largeHoles(const cv::Mat& disparity, int max_size) {
 }  // namespace
 
 void fillHoles(cv::Mat& disparity, int max_size) {
+  requireMap(disparity, "hole filling");
   const cv::Mat large = max_size > 0 ? largeHoles(disparity, max_size) : cv::Mat();
   std::vector<bool> filled(disparity.rows);
   for (int y = 0; y < disparity.rows; ++y) filled[y] = fillRow(disparity.ptr<float>(y), disparity.cols);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "arguments.hpp"
 #include "parallel.hpp"
 #include "simd/left_right_check_kernels.hpp"
 
@@ -74,6 +75,8 @@ void keepSupported(cv::Mat& disparity, const cv::Mat& right, float max_differenc
 }  // namespace
 
 void checkLeftRight(cv::Mat& disparity_left, const cv::Mat& disparity_right, const LeftRightCheckParams& params) {
+  requireMap(disparity_left, "left-right check");
+  requireMap(disparity_right, disparity_left.size(), "left-right check");
   const auto max_difference = static_cast<float>(params.max_difference_px);
   if (params.vote) return keepSupported(disparity_left, disparity_right, max_difference);
   const auto makeRow = [&] { return std::vector<float>(disparity_left.cols); };

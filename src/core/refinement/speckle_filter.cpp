@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 #include <vector>
+#include "arguments.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -88,6 +89,7 @@ class Regions {
 }  // namespace
 
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
+  requireMap(disparity, "speckle filter");
   if (params.max_size <= 0) return;
   Regions regions(disparity, static_cast<float>(params.max_difference_px));
   regions.visitSmaller(params.max_size, [&](int y, int first, int end) {

@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "arguments.hpp"
 #include "parallel.hpp"
 #include "simd/weighted_median_kernels.hpp"
 
@@ -134,6 +135,8 @@ struct Scratch {
 }  // namespace
 
 void filterWeightedMedian(cv::Mat& disparity, const cv::Mat& left, const WeightedMedianParams& params) {
+  requireMap(disparity, "weighted median");
+  requireImage(left, disparity.size(), "weighted median");
   if (params.radius <= 0) return;
   const cv::Mat before = disparity.clone();
   const int side = 2 * params.radius + 1, width = disparity.cols;

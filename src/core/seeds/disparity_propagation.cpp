@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "arguments.hpp"
 #include "images/colour.hpp"
 #include "seeds/surface_propagation.hpp"
 
@@ -25,10 +25,8 @@ struct GridSeed {
 };
 
 /// Rounded seeds inside image and range, in raster order: the products of eq. (11) commute but for their rounding.
-/// They live until the next call of this thread.
-const std::vector<GridSeed>& onGrid(const Seeds& seeds, DisparityAxis axis, const CostVolume& volume) {
-  thread_local std::vector<GridSeed> grid;  // keeps its memory
-  grid.clear();
+std::vector<GridSeed> onGrid(const Seeds& seeds, DisparityAxis axis, const CostVolume& volume) {
+  std::vector<GridSeed> grid;
   for (const Seed& seed : seeds) {
     const float index = (seed.d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
     const GridSeed g{cvRound(seed.x), cvRound(seed.y), static_cast<int>(std::lround(index)),
@@ -58,8 +56,7 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
   const auto factors = makeFactors(params.gamma);
   const int radius = params.window / 2;
   const int channels = left.channels();
-  thread_local std::vector<std::uint8_t> touched;  // keeps its memory
-  touched.assign(left.total(), 0);
+  std::vector<std::uint8_t> touched(left.total(), 0);
   for (const GridSeed& seed : seeds) {
     const uchar* centre = left.ptr<uchar>(seed.y) + channels * seed.x;
     for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
@@ -102,13 +99,10 @@ double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const Dispari
 double propagateDisparity(const Seeds& seeds, const cv::Mat& left, const DisparityPropagationParams& params,
                           DisparityAxis axis, CostVolume& volume) {
   check(left, params, volume);
-  thread_local Seeds used;  // keeps its memory
-  used.clear();
-  std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(used),
-               [&](const Seed& s) { return params.image_seeds || s.source != SeedSource::kFeature; });
-  if (used.empty()) return 0.0;
-  if (params.form == PropagationForm::kSurface) return propagateSurfaces(used, left, params, axis, volume);
-  const std::vector<GridSeed>& grid = onGrid(used, axis, volume);
+  const Seeds finite = finiteSeeds(seeds);
+  if (finite.empty()) return 0.0;
+  if (params.form == PropagationForm::kSurface) return propagateSurfaces(finite, left, params, axis, volume);
+  const std::vector<GridSeed> grid = onGrid(finite, axis, volume);
   return volume.depth() == CostVolume::Depth::kU8 ? propagateWindows<std::uint8_t>(grid, left, params, volume)
                                                   : propagateWindows<std::uint16_t>(grid, left, params, volume);
 }

@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
+#include <string>
 
+#include "arguments.hpp"
 #include "fdp_stereo/left_right_check.hpp"
 #include "fdp_stereo/speckle_filter.hpp"
 
@@ -79,6 +82,10 @@ DisparityPropagationParams surfacesOf(const QuasiDenseParams& params) {
 
 Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
                       const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher) {
+  if (params.row_step < 1 || params.spacing_px < 1) {
+    throw std::invalid_argument("quasi-dense seeds: row_step " + std::to_string(params.row_step) + " and spacing_px " +
+                                std::to_string(params.spacing_px) + " must be at least 1");
+  }
   OptimizerOutput rough;
   matcher.match(volume, guide, penalties, rough, params.row_step);
   LeftRightCheckParams check;

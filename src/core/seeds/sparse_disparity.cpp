@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "arguments.hpp"
 #include "fdp_stereo/io.hpp"
 #include "images/colour.hpp"
 #include "seeds/seed_grid.hpp"
@@ -123,21 +124,23 @@ SparseDisparity buildSparseDisparity(const FeatureMatches& matches, const Seeds&
 }
 
 cv::Mat drawSeeds(const cv::Mat& left, const SparseDisparity& sparse, DisparityRange range) {
+  requireImage(left, left.size(), "picture of the seeds");
+  const Seeds seeds = finiteSeeds(sparse.seeds);
   cv::Mat picture = left.clone();
   if (left.channels() == 1) cv::cvtColor(left, picture, cv::COLOR_GRAY2BGR);
   picture *= 0.5;
-  cv::Mat disparities(1, static_cast<int>(sparse.seeds.size()), CV_32FC1);
-  for (std::size_t i = 0; i < sparse.seeds.size(); ++i) disparities.at<float>(static_cast<int>(i)) = sparse.seeds[i].d;
-  const cv::Mat colours = sparse.seeds.empty() ? cv::Mat() : colorize(disparities, range);
-  for (const Seed& seed : sparse.rejected) {
+  cv::Mat disparities(1, static_cast<int>(seeds.size()), CV_32FC1);
+  for (std::size_t i = 0; i < seeds.size(); ++i) disparities.at<float>(static_cast<int>(i)) = seeds[i].d;
+  const cv::Mat colours = seeds.empty() ? cv::Mat() : colorize(disparities, range);
+  for (const Seed& seed : finiteSeeds(sparse.rejected)) {
     cv::drawMarker(picture, {cvRound(seed.x), cvRound(seed.y)}, {230, 230, 230}, cv::MARKER_TILTED_CROSS, 5, 1);
   }
-  const auto discs = std::count_if(sparse.seeds.begin(), sparse.seeds.end(),
+  const auto discs = std::count_if(seeds.begin(), seeds.end(),
                                    [](const Seed& seed) { return seed.source != SeedSource::kQuasiDense; });
-  for (std::size_t i = 0; i < sparse.seeds.size(); ++i) {
-    const cv::Point at(cvRound(sparse.seeds[i].x), cvRound(sparse.seeds[i].y));
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    const cv::Point at(cvRound(seeds[i].x), cvRound(seeds[i].y));
     const cv::Scalar colour = colours.at<cv::Vec3b>(static_cast<int>(i));
-    const bool dot = sparse.seeds[i].source == SeedSource::kQuasiDense;
+    const bool dot = seeds[i].source == SeedSource::kQuasiDense;
     cv::circle(picture, at, dot ? 0 : (discs < 3000 ? 2 : 1), colour, cv::FILLED, dot ? cv::LINE_8 : cv::LINE_AA);
   }
   return picture;
