@@ -8,6 +8,7 @@
 #include <mutex>
 #include <new>
 
+#include <dynamic_reconfigure/config_tools.h>
 #include <image_transport/exception.h>
 #include <image_transport/image_transport.h>
 #include <nodelet/nodelet.h>
@@ -19,6 +20,7 @@
 #include "output_topics.hpp"
 #include "pair_synchronizer.hpp"
 #include "reconfigure_server.hpp"
+#include "search_range.hpp"
 #include "seed_sources.hpp"
 #include "stamps.hpp"
 #include "start_params.hpp"
@@ -87,16 +89,19 @@ class DisparityNodelet : public nodelet::Nodelet {
   void onRestart();
   bool overRate(const ros::Time& stamp);
 
+  void searchFromNearest(const StereoFrame& frame);
   void work(const StereoFrame& frame, const std::atomic<bool>& cancel);
   bool tooOld(const StereoFrame& frame, const NodeSettings& settings);
   void warn(const std::string& text) { reporter_.warn(text); }
   void complete(NodeStatus& status);
+  StereoTopics topics() const { return {input_names_[0], input_names_[2], input_names_[1], input_names_[3]}; }
 
   std::array<std::string, 4> input_names_;  ///< resolved, in the order of PairSynchronizer::Input
   std::unique_ptr<ReconfigureServer> reconfigure_;
   std::unique_ptr<SeedSources> seeds_;
   std::unique_ptr<MaskSources> masks_;
   std::unique_ptr<FrameProcessor> processor_;
+  double nearest_m_ = 0.0;           ///< that the range shall be made for with the next pair; 0 = as it is
   std::atomic<bool> forget_{false};  ///< tells the worker that the stamps jumped back
 
   std::unique_ptr<image_transport::ImageTransport> transport_;
@@ -153,6 +158,7 @@ void DisparityNodelet::start() {
                                       readPeriod(params, "watch_period", kWatchPeriod)};
   seeds_ = std::make_unique<SeedSources>(node, params);
   masks_ = std::make_unique<MaskSources>(node, params);
+  nearest_m_ = params.param("nearest", 0.0);
   reconfigure_ = std::make_unique<ReconfigureServer>(getPrivateNodeHandle(), params.names(), say);
 
   synchronizer_ = std::make_unique<PairSynchronizer>(
@@ -161,16 +167,18 @@ void DisparityNodelet::start() {
                                           warn(text(input_names_[input], ": stamp ", stamp.toSec(),
                                                     " s is too far from the others'; check the clock of the camera"));
                                         }});
-  const auto& [left, left_info, right, right_info] = input_names_;
   processor_ = std::make_unique<FrameProcessor>(
-      StereoTopics{left, right, left_info, right_info},
-      [this](const SeedRequest& request) { return seeds_->collect(request); },
+      topics(), [this](const SeedRequest& request) { return seeds_->collect(request); },
       [this](cv::Size size) { return masks_->masks(size); });
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
   reporter_.update([&](NodeStatus& status) { status.approximate_sync = sync.approximate; });
   reporter_.start(node, getPrivateNodeHandle(), periods, [this](NodeStatus& status) { complete(status); });
   advertise();
+  const std::shared_ptr<const NodeSettings> settings = reconfigure_->settings();
+  NODELET_INFO("preset %s, %d disparities; takes %s and %s while %s or another output has a subscriber",
+               settings->preset.c_str(), settings->pipeline.search.count, input_names_[0].c_str(),
+               input_names_[2].c_str(), node.resolveName("disparity").c_str());
 }
 
 void DisparityNodelet::advertise() {
@@ -266,8 +274,9 @@ bool DisparityNodelet::overRate(const ros::Time& stamp) {
 
 void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& cancel) {
   const auto start = Clock::now();
-  const std::shared_ptr<const NodeSettings> settings = reconfigure_->settings();
   try {
+    if (nearest_m_ != 0.0) searchFromNearest(frame);
+    const std::shared_ptr<const NodeSettings> settings = reconfigure_->settings();
     if (tooOld(frame, *settings)) return;
     if (!setNiceLevel(settings->node.nice, settings->pipeline.threads)) {
       warn("nice cannot be lowered without privileges; restart the node");
@@ -284,6 +293,19 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
   } catch (const std::exception& error) {
     reporter_.recordFailure(error.what());
   }
+}
+
+/// Needs a calibration that can be used, and then is done: what is edited later holds.
+void DisparityNodelet::searchFromNearest(const StereoFrame& frame) {
+  const cv::Size size(static_cast<int>(frame.left->width), static_cast<int>(frame.left->height));
+  std::vector<std::string> told_with_the_frame;
+  const StereoGeometry geometry =
+      stereoGeometry(*frame.left_info, *frame.right_info, size, topics(), told_with_the_frame);
+  const double nearest_m = std::exchange(nearest_m_, 0.0);
+  dynamic_reconfigure::Config edit;
+  dynamic_reconfigure::ConfigTools::appendParameter(
+      edit, "disparity_range", disparityRangeFor(nearest_m, reconfigure_->settings()->pipeline.search.min, geometry));
+  reconfigure_->apply(edit);
 }
 
 bool DisparityNodelet::tooOld(const StereoFrame& frame, const NodeSettings& settings) {

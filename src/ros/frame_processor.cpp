@@ -85,7 +85,8 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
       stereoGeometry(*frame.left_info, *frame.right_info, left.size(), topics_, output.report.warnings);
   const DisparityRange range = settings.pipeline.search;
   checkRange(range, left.cols, geometry, output.report.warnings);
-  output.report.notes.push_back(visibleDistances(range, left.cols, geometry));
+  output.report.notes.push_back(
+      text(topics_.left_image, " (", describe(left), "): ", visibleDistances(range, left.cols, geometry)));
   const PinholeCamera camera = pinholeCamera(*frame.left_info, left.size());
   describePlace(camera, frame, topics_.left_info, output.report);
 

@@ -127,8 +127,18 @@ dynamic_reconfigure::Config ReconfigureServer::completeConfig(const NodeSettings
   return config;
 }
 
+void ReconfigureServer::apply(const dynamic_reconfigure::Config& edits) {
+  std::vector<std::string> messages;
+  {
+    const std::lock_guard<std::mutex> lock(edit_mutex_);
+    adopt(applyConfig(edits, *settings(), messages));
+  }
+  for (const std::string& message : messages) report_(message);
+}
+
 bool ReconfigureServer::onSetParameters(dynamic_reconfigure::Reconfigure::Request& request,
                                         dynamic_reconfigure::Reconfigure::Response& response) {
+  const std::lock_guard<std::mutex> lock(edit_mutex_);
   std::vector<std::string> messages;
   const NodeSettings edited = applyConfig(request.config, *settings(), messages);
   for (const std::string& message : messages) report_(message);

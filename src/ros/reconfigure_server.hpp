@@ -32,6 +32,9 @@ class ReconfigureServer {
   /// The newest set; it never changes once handed out.
   std::shared_ptr<const NodeSettings> settings() const;
 
+  /// An edit that the node itself makes; what had to be corrected is reported.
+  void apply(const dynamic_reconfigure::Config& edits);
+
  private:
   bool onSetParameters(dynamic_reconfigure::Reconfigure::Request& request,
                        dynamic_reconfigure::Reconfigure::Response& response);
@@ -45,6 +48,7 @@ class ReconfigureServer {
 
   ros::NodeHandle node_;
   Report report_;
+  std::mutex edit_mutex_;  ///< held from reading the settings to storing their successor
   mutable std::mutex mutex_;
   std::shared_ptr<const NodeSettings> settings_;
   dynamic_reconfigure::Config written_;
