@@ -13,6 +13,7 @@ add_library(fdp_stereo_nodelet
   src/ros/seed_conversions.cpp
   src/ros/seed_sources.cpp
   src/ros/mask_sources.cpp
+  src/ros/rectifier.cpp
   src/ros/frame_processor.cpp
   src/ros/output_topics.cpp
   src/ros/node_status.cpp
@@ -47,7 +48,6 @@ if(TARGET match)
     tools/bag_topics.cpp
     tools/calibration_file.cpp
     tools/compressed_image.cpp
-    tools/rectifier.cpp
   )
   target_link_libraries(fdp_stereo_bags PUBLIC fdp_stereo_nodelet fdp_stereo_tool_support PRIVATE ${YAML_CPP_LIBRARIES})
   foreach(tool images_to_bag process_bag)

@@ -58,6 +58,12 @@ void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
       "Print every parameter that --set takes and exit");
 }
 
+void addMaskOptions(CLI::App& app, MaskOptions& masks) {
+  app.add_option("--left-mask", masks.left,
+                 "Picture of what to leave out of the rectified left image: white = left out");
+  app.add_option("--right-mask", masks.right, "The same for the right image");
+}
+
 CLI::Validator numberIn(double smallest, double largest) {
   CLI::Range range(smallest, largest);
   const auto check = [range](const std::string& text) {

@@ -32,6 +32,15 @@ struct PipelineOptions {
 /// Adds --min-disparity, --num-disparities, --threads, --set, --fill, and --list-parameters, which prints and exits.
 void addPipelineOptions(CLI::App& app, PipelineOptions& options);
 
+/// Files of masks, "" = none.
+struct MaskOptions {
+  std::string left;
+  std::string right;
+};
+
+/// Adds --left-mask and --right-mask.
+void addMaskOptions(CLI::App& app, MaskOptions& masks);
+
 /// CLI::Range of numbers that "nan" is not in.
 CLI::Validator numberIn(double smallest, double largest);
 

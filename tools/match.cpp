@@ -31,8 +31,7 @@ struct Options {
   std::string row_alignment;
   std::string seeds;
   std::string draw_seeds;
-  std::string left_mask;
-  std::string right_mask;
+  MaskOptions masks;
   bool log_energy = false;
   bool overwrite = false;
   PipelineOptions pipeline;
@@ -47,8 +46,7 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--preset", options.preset, "Preset by name, or a YAML file")->capture_default_str();
   addPipelineOptions(app, options.pipeline);
   app.add_option("--seeds", options.seeds, "Seeds of another sensor: text 'x y d [trust]', 16-bit .png or .pfm");
-  app.add_option("--left-mask", options.left_mask, "Picture of what to leave out of LEFT: white = left out");
-  app.add_option("--right-mask", options.right_mask, "The same for RIGHT");
+  addMaskOptions(app, options.masks);
   app.add_option("--draw-seeds", options.draw_seeds,
                  "Draw the seeds on the left image, coloured by disparity, rejected ones as crosses");
   app.add_option("--color", options.color, "Write the disparity in colours, black = none");
@@ -158,7 +156,7 @@ void printSummary(const Options& options, const PipelineParams& params, const Pi
     if (!rows.warning.empty()) std::cout << "warning: " << rows.warning << '\n';
   }
   std::cout << options.output << ": " << result.disparity.cols << " x " << result.disparity.rows << ", "
-            << 100.0 * validShare(result.disparity) << " % valid, " << result.seeds.size() << " seeds, "
+            << 100.0 * validShare(result.disparity) << " % valid, " << allSeeds(result).seeds.size() << " seeds, "
             << totalMs(result) << " ms\n";
 }
 
@@ -181,7 +179,7 @@ void checkFiles(const Options& options) {
   }
   checkOutputs({options.output, options.color, options.confidence, options.sigma, options.measures,
                 options.row_alignment, options.draw_seeds, options.timings},
-               {options.left, options.right, options.seeds, options.left_mask, options.right_mask, options.preset},
+               {options.left, options.right, options.seeds, options.masks.left, options.masks.right, options.preset},
                options.overwrite);
 }
 
@@ -215,15 +213,6 @@ bool looksSwapped(const cv::Mat& left, const cv::Mat& right, const PipelineParam
   return Pipeline(quick).run(right, left).matches.size() > 4 * std::max(kFewMatches / 2, result.matches.size());
 }
 
-cv::Mat readMask(const std::string& path, cv::Size size) {
-  if (path.empty()) return {};
-  cv::Mat mask = toMask(readImage(path));
-  if (mask.size() == size) return mask;
-  throw std::runtime_error(path + ": a mask of " + std::to_string(mask.cols) + " x " + std::to_string(mask.rows) +
-                           " px, but the image has " + std::to_string(size.width) + " x " +
-                           std::to_string(size.height));
-}
-
 int match(const Options& options) {
   const PipelineParams params = resolveParams(options.preset, options.pipeline);
   if (options.log_energy && params.optimizer != OptimizerType::kLocalExpansion) {
@@ -236,7 +225,7 @@ int match(const Options& options) {
   const Seeds seeds = options.seeds.empty() ? Seeds() : readSeeds(options.seeds, left.size());
   warnOfSeedsOutside(seeds, left.size());
   Pipeline pipeline(params);
-  pipeline.setMasks(readMask(options.left_mask, left.size()), readMask(options.right_mask, left.size()));
+  pipeline.setMasks(readMask(options.masks.left, left.size()), readMask(options.masks.right, left.size()));
   if (!options.measures.empty()) pipeline.setQuality(Pipeline::Quality::kWithMeasures);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) pipeline.setProgress(showProgress);

@@ -3,6 +3,7 @@
 //
 // process_bag IN.bag OUT.bag: the nodelet's outputs for every pair of a recording, without a roscore.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -19,6 +20,7 @@
 #include "bag_topics.hpp"
 #include "command_line.hpp"
 #include "compressed_image.hpp"
+#include "fdp_stereo/io.hpp"
 #include "frame_processor.hpp"
 #include "output_bag.hpp"
 #include "rectifier.hpp"
@@ -48,6 +50,7 @@ struct Options {
   bool overwrite = false;
   SyncOptions sync;
   PipelineOptions pipeline;
+  MaskOptions masks;
 };
 
 /// Opens a recording; says what to do where it was not closed.
@@ -99,14 +102,6 @@ StereoTopics findTopics(const Options& options, const BagTopics& bag) {
   return topics;
 }
 
-/// image_rect, image_rect_color and the like, compressed or not.
-bool isRectifiedName(std::string topic) {
-  const std::size_t transport = topic.rfind("/compressed");
-  if (transport != std::string::npos) topic.resize(transport);
-  const std::string name = topic.substr(topic.rfind('/') + 1);
-  return name.find("rect") != std::string::npos && name.find("unrect") == std::string::npos;
-}
-
 /// What is told at the end.
 struct Counts {
   std::size_t pairs = 0;
@@ -128,7 +123,9 @@ class BagProcessor {
         right_info_(input, counts_of_topics_, topics_.right_image, topics_.right_info, options.right_calibration),
         output_(output),
         pairs_(options.sync),
-        processor_(topics_) {
+        processor_(
+            topics_, nullptr, [this](cv::Size size) { return masks(size); },
+            options.rectify ? InputImages::kRaw : InputImages::kRectified) {
     settings_.pipeline = resolveParams(options.preset, options.pipeline);
     for (const char* name : {"/disparity", "/depth", "/depth/image_rect", "/depth/camera_info", "/confidence"}) {
       results_.push_back(options.stereo_namespace + name);
@@ -216,8 +213,8 @@ class BagProcessor {
 
   FrameOutput process(const BagPair& pair) {
     StereoFrame frame;
-    frame.left = read(*pair.left, *pair.left_info, topics_.left_image, left_rectifier_);
-    frame.right = read(*pair.right, *pair.right_info, topics_.right_image, right_rectifier_);
+    frame.left = read(*pair.left, *pair.left_info, topics_.left_image);
+    frame.right = read(*pair.right, *pair.right_info, topics_.right_image);
     frame.left_info = pair.left_info;
     frame.right_info = pair.right_info;
     return processor_.process(frame, settings_, {true, true, true});
@@ -232,16 +229,19 @@ class BagProcessor {
         "which it is; use --rectify, or --rectified where it is rectified already");
   }
 
-  sensor_msgs::ImageConstPtr read(const BagImage& image, const CameraInfo& info, const std::string& topic,
-                                  Rectifier& rectifier) const {
+  MaskPair masks(cv::Size size) {
+    const std::array<std::string, 2> paths{options_.masks.left, options_.masks.right};
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      if (masks_[i].size() != size) masks_[i] = readMask(paths[i], size);
+    }
+    return masks_;
+  }
+
+  static sensor_msgs::ImageConstPtr read(const BagImage& image, const CameraInfo& info, const std::string& topic) {
     constexpr std::int64_t kAlwaysAllowed = 1 << 24;  // px; more only where the calibration tells of them
     const std::int64_t max_pixels = std::max(kAlwaysAllowed, std::int64_t{info.width} * info.height);
-    sensor_msgs::ImageConstPtr read = image.message->instantiate<sensor_msgs::Image>();
-    if (!read) {
-      const auto compressed = image.message->instantiate<sensor_msgs::CompressedImage>();
-      read = decompress(*compressed, topic, max_pixels);
-    }
-    return options_.rectify ? rectifier.rectify(*read, info, topic) : read;
+    if (auto read = image.message->instantiate<sensor_msgs::Image>()) return read;
+    return decompress(*image.message->instantiate<sensor_msgs::CompressedImage>(), topic, max_pixels);
   }
 
   void write(const FrameOutput& results, const ros::Time& time) {
@@ -262,7 +262,7 @@ class BagProcessor {
   rosbag::Bag& output_;
   PairCollector pairs_;
   FrameProcessor processor_;
-  Rectifier left_rectifier_, right_rectifier_;
+  MaskPair masks_;
   NodeSettings settings_;
   std::vector<std::string> results_;  ///< topics that are written here
   Counts counts_;
@@ -287,7 +287,9 @@ int processBag(Options& options) {
   }
   if (options.rectify && options.rectified) throw UsageError("--rectify is for raw images, --rectified for others");
   options.stereo_namespace = normalName(options.stereo_namespace);
-  checkOutputs({options.output}, {options.input, options.preset, options.left_calibration, options.right_calibration},
+  checkOutputs({options.output},
+               {options.input, options.preset, options.left_calibration, options.right_calibration, options.masks.left,
+                options.masks.right},
                options.overwrite);
   rosbag::Bag input;
   openInput(input, options.input);
@@ -321,7 +323,8 @@ void addInputOptions(CLI::App& app, Options& options) {
   app.add_option("--left-calibration", options.left_calibration,
                  "Calibration file (YAML of camera_calibration) instead of the left camera_info");
   app.add_option("--right-calibration", options.right_calibration, "The same for the right camera");
-  app.add_flag("--rectify", options.rectify, "The images are raw: rectify them first, as image_proc does");
+  app.add_flag("--rectify", options.rectify,
+               "The images are raw: rectify them first, as image_proc does, and leave out the border that this makes");
   app.add_flag("--rectified", options.rectified, "The images are rectified, although their name does not say so");
   app.add_flag("--approximate-sync", options.sync.approximate, "Pair images whose stamps differ, like the node");
   app.add_option("--approximate-sync-tolerance", options.sync.tolerance_s, "Largest difference in s, 0 = any")
@@ -333,6 +336,7 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("OUT", options.output, "Bag to write: all of IN, and disparity, depth and confidence")->required();
   app.add_option("--preset", options.preset, "Preset by name, or a YAML file")->capture_default_str();
   addPipelineOptions(app, options.pipeline);
+  addMaskOptions(app, options.masks);
   addInputOptions(app, options);
   addOverwriteOption(app, options.overwrite);
   app.footer("Exit codes: 0 done, 1 the recording is at fault, 2 the command line is.");

@@ -31,6 +31,9 @@ cv::Mat readImage(const std::string& path);
 /// The mask that a picture (8U or 16U, any channels) shows: CV_8UC1, 255 where it is at least half as bright as white
 /// in any channel.
 cv::Mat toMask(const cv::Mat& picture);
+/// The mask of a picture's file, for images of `size` px; empty where `path` is. Throws std::runtime_error naming the
+/// file.
+cv::Mat readMask(const std::string& path, cv::Size size);
 /// The same as readImage() from the bytes of such a file; `name` stands for it in errors. More than max_pixels are
 /// refused before anything is decoded.
 cv::Mat decodeImageFile(std::string_view bytes, const std::string& name,

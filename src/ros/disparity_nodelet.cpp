@@ -66,6 +66,14 @@ NodeReporter::Seconds readPeriod(StartParams& start, const std::string& name, do
   return NodeReporter::Seconds(wanted_s >= kShortest && wanted_s <= kLongest ? wanted_s : fallback_s);
 }
 
+InputImages readInputImages(StartParams& start, const std::function<void(std::string)>& warn) {
+  const auto rectify = start.param<std::string>("rectify", "none");
+  if (rectify != "none" && rectify != "internal") {
+    warn(text("~rectify = ", quoteForLog(rectify), " must be internal, which takes raw images, or none; using none"));
+  }
+  return rectify == "internal" ? InputImages::kRaw : InputImages::kRectified;
+}
+
 }  // namespace
 
 /// stereo_image_proc's disparity, by this package's pipeline.
@@ -77,6 +85,9 @@ class DisparityNodelet : public nodelet::Nodelet {
   void onInit() override;
   void start();
   void release();
+  std::string imageName(const std::string& side) const {
+    return side + (images_ == InputImages::kRaw ? "/image_raw" : "/image_rect");
+  }
   void advertise();
   void onSubscriberChange();
   void subscribe();
@@ -96,6 +107,7 @@ class DisparityNodelet : public nodelet::Nodelet {
   void complete(NodeStatus& status);
   StereoTopics topics() const { return {input_names_[0], input_names_[2], input_names_[1], input_names_[3]}; }
 
+  InputImages images_ = InputImages::kRectified;
   std::array<std::string, 4> input_names_;  ///< resolved, in the order of PairSynchronizer::Input
   std::unique_ptr<ReconfigureServer> reconfigure_;
   std::unique_ptr<SeedSources> seeds_;
@@ -148,10 +160,11 @@ void DisparityNodelet::onInit() {
 void DisparityNodelet::start() {
   ros::NodeHandle& node = getNodeHandle();
   reporter_.setName(getName());
-  input_names_ = {node.resolveName("left/image_rect"), node.resolveName("left/camera_info"),
-                  node.resolveName("right/image_rect"), node.resolveName("right/camera_info")};
   StartParams params(getPrivateNodeHandle());
   const auto say = [this](const std::string& message) { warn(message); };
+  images_ = readInputImages(params, say);
+  input_names_ = {node.resolveName(imageName("left")), node.resolveName("left/camera_info"),
+                  node.resolveName(imageName("right")), node.resolveName("right/camera_info")};
   const PairSynchronizerParams sync = readSynchronizerParams(params, say);
   params.param<std::string>("image_transport", "raw");  // which image_transport reads itself
   const NodeReporter::Periods periods{readPeriod(params, "diagnostic_period", kDiagnosticsPeriod),
@@ -169,7 +182,7 @@ void DisparityNodelet::start() {
                                         }});
   processor_ = std::make_unique<FrameProcessor>(
       topics(), [this](const SeedRequest& request) { return seeds_->collect(request); },
-      [this](cv::Size size) { return masks_->masks(size); });
+      [this](cv::Size size) { return masks_->masks(size); }, images_);
   worker_ = std::make_unique<FrameWorker>(
       [this](const StereoFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
   reporter_.update([&](NodeStatus& status) { status.approximate_sync = sync.approximate; });
@@ -185,7 +198,7 @@ void DisparityNodelet::advertise() {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
   ros::NodeHandle& node = getNodeHandle();
   transport_ = std::make_unique<image_transport::ImageTransport>(node);
-  outputs_.advertise(node, [this] { onSubscriberChange(); });
+  outputs_.advertise(node, images_, [this] { onSubscriberChange(); });
 }
 
 void DisparityNodelet::onSubscriberChange() {
@@ -223,10 +236,10 @@ void DisparityNodelet::subscribe() {
 void DisparityNodelet::subscribeImages(const ros::TransportHints& ros_hints) {
   const image_transport::TransportHints hints("raw", ros_hints, getPrivateNodeHandle());
   left_image_ = transport_->subscribe(
-      "left/image_rect", 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kLeftImage, m); },
+      imageName("left"), 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kLeftImage, m); },
       ros::VoidPtr(), hints);
   right_image_ = transport_->subscribe(
-      "right/image_rect", 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kRightImage, m); },
+      imageName("right"), 1, [this](const ImageConstPtr& m) { onInput(PairSynchronizer::kRightImage, m); },
       ros::VoidPtr(), hints);
 }
 

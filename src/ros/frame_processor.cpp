@@ -16,6 +16,8 @@
 namespace fdp_stereo {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr char kJumpedBack[] = "the stamps jumped back";
 
 std::string describe(const cv::Mat& image) {
@@ -75,41 +77,14 @@ cv::Mat sureDisparity(const PipelineResult& result, const cv::Mat& depth_error, 
   return sure;
 }
 
-}  // namespace
-
-FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
-                                    const std::atomic<bool>* cancel) {
-  FrameOutput output;
-  const auto [left, right] = decodePair(frame, output.report.warnings);
-  const StereoGeometry geometry =
-      stereoGeometry(*frame.left_info, *frame.right_info, left.size(), topics_, output.report.warnings);
-  const DisparityRange range = settings.pipeline.search;
-  checkRange(range, left.cols, geometry, output.report.warnings);
-  output.report.notes.push_back(
-      text(topics_.left_image, " (", describe(left), "): ", visibleDistances(range, left.cols, geometry)));
-  const PinholeCamera camera = pinholeCamera(*frame.left_info, left.size());
-  describePlace(camera, frame, topics_.left_info, output.report);
-
-  using Clock = std::chrono::steady_clock;
-  const auto patience =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.node.seeds_wait_s));
-  const Seeds external = externalSeeds(
-      {frame, settings, camera, geometry, Clock::now() + patience, cancel, output.report.warnings}, output.report);
-  Pipeline& pipeline = pipelineFor(settings);
-  followTime(frame.left->header.stamp);
-  const bool quality = needsQuality(settings.node, wanted);
-  pipeline.setQuality(quality ? Pipeline::Quality::kEstimated : Pipeline::Quality::kNone);
-  const MaskPair masks = masks_ ? masks_(left.size()) : MaskPair();
-  pipeline.setMasks(masks[0], masks[1]);
-  PipelineResult result = pipeline.run(left, right, external, cancel);
-  if (cancel != nullptr && *cancel) return output;
-  // What both cameras cannot have seen stays unknown though filled: consumers rely on a map that is not fully dense.
-  if (settings.pipeline.hole_filling.enabled) dropHidden(result.disparity);
-
+void fillMaps(const StereoFrame& frame, const NodeSettings& settings, const StereoGeometry& geometry,
+              const WantedOutputs& wanted, const PipelineResult& result, FrameOutput& output) {
   const std_msgs::Header& header = frame.left->header;
+  const DisparityRange range = settings.pipeline.search;
   if (wanted.disparity) {
     output.disparity = toDisparityMessage(result.disparity, header, geometry, range, disparityStep(settings.pipeline));
   }
+  const bool quality = needsQuality(settings.node, wanted);
   const cv::Mat depth_error = quality ? depthError(result.disparity, result.sigma, geometry) : cv::Mat();
   if (wanted.depth) {
     output.depth = toDepthMessage(sureDisparity(result, depth_error, settings.node), header, geometry,
@@ -120,8 +95,81 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   if (wanted.depth_error) output.depth_error = toImageMessage(depth_error, header);
   if (wanted.seeds) output.seeds = toImageMessage(drawSeeds(result.left, allSeeds(result), range), header);
   if (wanted.disparity_color) output.disparity_color = toImageMessage(colorize(result.disparity, range), header);
-  fillReport(result, output.report);
+}
+
+}  // namespace
+
+FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings& settings, const WantedOutputs& wanted,
+                                    const std::atomic<bool>* cancel) {
+  FrameOutput output;
+  FrameReport& report = output.report;
+  Images images = decodePair(frame, report.warnings);
+  const cv::Size size = images[0].size();
+  const StereoGeometry geometry = stereoGeometry(*frame.left_info, *frame.right_info, size, topics_, report.warnings);
+  if (images_ == InputImages::kRaw) images = rectifyPair(frame, images, report);
+  if (wanted.left_rectified) output.left_rectified = toImageMessage(images[0], frame.left->header);
+  if (wanted.left_rectified && !wanted.maps()) return output;
+  const DisparityRange range = settings.pipeline.search;
+  checkRange(range, size.width, geometry, report.warnings);
+  report.notes.push_back(
+      text(topics_.left_image, " (", describe(images[0]), "): ", visibleDistances(range, size.width, geometry)));
+  const PinholeCamera camera = pinholeCamera(*frame.left_info, size);
+  describePlace(camera, frame, topics_.left_info, report);
+
+  const auto patience =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.node.seeds_wait_s));
+  const Seeds external =
+      externalSeeds({frame, settings, camera, geometry, Clock::now() + patience, cancel, report.warnings}, report);
+  followTime(frame.left->header.stamp);
+  const bool quality = needsQuality(settings.node, wanted);
+  PipelineResult result = runPipeline(images, external, settings, quality, cancel);
+  if (cancel != nullptr && *cancel) return output;
+  fillMaps(frame, settings, geometry, wanted, result, output);
+  fillReport(result, report);
   return output;
+}
+
+/// Raw images of this pair and what is to be said of them.
+FrameProcessor::Images FrameProcessor::rectifyPair(const StereoFrame& frame, const Images& raw, FrameReport& report) {
+  const auto start = Clock::now();
+  const auto rectify = [&](Rectifier& rectifier, const cv::Mat& image, const sensor_msgs::CameraInfo& info,
+                           const std::string& image_topic, const std::string& info_topic) {
+    const bool needed = needsRectification(info);
+    if (!needed)
+      report.notes.push_back(text(image_topic, ": ", info_topic, " leaves nothing to rectify: used as it is"));
+    if (needed && isRectifiedName(image_topic)) {
+      report.warnings.push_back(text(image_topic,
+                                     ": rectified already, by its name, and now once more; give raw images,",
+                                     " or set ~rectify to none"));
+    }
+    return rectifier.rectify(image, info, info_topic);
+  };
+  Images rectified{rectify(left_rectifier_, raw[0], *frame.left_info, topics_.left_image, topics_.left_info),
+                   rectify(right_rectifier_, raw[1], *frame.right_info, topics_.right_image, topics_.right_info)};
+  report.rectification_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return rectified;
+}
+
+/// The masks that are given, and the borders that rectification leaves.
+MaskPair FrameProcessor::masksFor(cv::Size size) const {
+  MaskPair masks = masks_ ? masks_(size) : MaskPair();
+  const std::array<cv::Mat, 2> borders{left_rectifier_.border(), right_rectifier_.border()};
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (!borders[i].empty()) masks[i] = masks[i].empty() ? borders[i] : cv::Mat(masks[i] | borders[i]);
+  }
+  return masks;
+}
+
+PipelineResult FrameProcessor::runPipeline(const Images& images, const Seeds& external, const NodeSettings& settings,
+                                           bool quality, const std::atomic<bool>* cancel) {
+  Pipeline& pipeline = pipelineFor(settings);
+  pipeline.setQuality(quality ? Pipeline::Quality::kEstimated : Pipeline::Quality::kNone);
+  const MaskPair masks = masksFor(images[0].size());
+  pipeline.setMasks(masks[0], masks[1]);
+  PipelineResult result = pipeline.run(images[0], images[1], external, cancel);
+  // What both cameras cannot have seen stays unknown though filled: consumers rely on a map that is not fully dense.
+  if (settings.pipeline.hole_filling.enabled) dropHidden(result.disparity);
+  return result;
 }
 
 void FrameProcessor::fillReport(PipelineResult& result, FrameReport& report) {
@@ -157,12 +205,12 @@ void FrameProcessor::followTime(const ros::Time& stamp) {
   constexpr double kLongestGap = 1.0;  // s
   const double passed = last_stamp_.isZero() || stamp.isZero() ? 0.0 : secondsBetween(last_stamp_, stamp);
   last_stamp_ = stamp;
+  if (!pipeline_) return;
   if (passed < 0.0) pipeline_->reset(kJumpedBack);
   if (passed > kLongestGap) pipeline_->resetStream("no pair for more than a second");
 }
 
-std::pair<cv::Mat, cv::Mat> FrameProcessor::decodePair(const StereoFrame& frame,
-                                                       std::vector<std::string>& warnings) const {
+FrameProcessor::Images FrameProcessor::decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const {
   checkHeader(frame.left->header, topics_.left_image, warnings);
   cv::Mat left = decodeImage(*frame.left, topics_.left_image);
   cv::Mat right = decodeImage(*frame.right, topics_.right_image);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -17,6 +18,7 @@
 #include "frame_worker.hpp"
 #include "mask_sources.hpp"
 #include "params_ros.hpp"
+#include "rectifier.hpp"
 #include "seed_conversions.hpp"
 
 namespace fdp_stereo {
@@ -29,8 +31,11 @@ struct WantedOutputs {
   bool seeds = false;
   bool disparity_color = false;
   bool depth_error = false;
+  bool left_rectified = false;
 
-  bool any() const { return disparity || depth || confidence || seeds || disparity_color || depth_error; }
+  /// What needs the pipeline.
+  bool maps() const { return disparity || depth || confidence || seeds || disparity_color || depth_error; }
+  bool any() const { return maps() || left_rectified; }
 };
 
 /// What is told about one pair.
@@ -42,7 +47,8 @@ struct FrameReport {
   std::size_t seeds = 0;
   std::size_t rejected_seeds = 0;
   std::size_t quasi_dense_seeds = 0;
-  double valid_share = 0.0;  ///< of the pixels
+  double valid_share = 0.0;       ///< of the pixels
+  double rectification_ms = 0.0;  ///< of both images
 };
 
 /// Messages of one pair, null where not wanted.
@@ -54,6 +60,7 @@ struct FrameOutput {
   sensor_msgs::ImagePtr depth_error;      ///< m, 1 sigma, NaN where there is no estimate
   sensor_msgs::ImagePtr seeds;            ///< the left image with the seeds, bgr8
   sensor_msgs::ImagePtr disparity_color;  ///< colours over the searched range, black = none, bgr8
+  sensor_msgs::ImagePtr left_rectified;   ///< the left image as it is matched
   FrameReport report;
 };
 
@@ -72,11 +79,16 @@ using SeedProvider = std::function<Seeds(const SeedRequest& request)>;
 /// What to leave out of the images of a size.
 using MaskProvider = std::function<MaskPair(cv::Size size)>;
 
+/// How images arrive.
+enum class InputImages { kRectified, kRaw };
+
 /// From messages to messages: checks, the pipeline, conversions. Not thread-safe; needs no node.
 class FrameProcessor {
  public:
-  explicit FrameProcessor(StereoTopics topics, SeedProvider seeds = nullptr, MaskProvider masks = nullptr)
-      : topics_(std::move(topics)), seeds_(std::move(seeds)), masks_(std::move(masks)) {}
+  /// Raw images are rectified first, and the border that this leaves black is masked.
+  explicit FrameProcessor(StereoTopics topics, SeedProvider seeds = nullptr, MaskProvider masks = nullptr,
+                          InputImages images = InputImages::kRectified)
+      : topics_(std::move(topics)), seeds_(std::move(seeds)), masks_(std::move(masks)), images_(images) {}
 
   /// Throws std::invalid_argument naming the topic, the value and the remedy where no disparity can come out. The
   /// outputs stay null where `cancel` was set meanwhile.
@@ -86,16 +98,24 @@ class FrameProcessor {
   void reset();
 
  private:
-  std::pair<cv::Mat, cv::Mat> decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
+  /// The left and the right image.
+  using Images = std::array<cv::Mat, 2>;
+  Images decodePair(const StereoFrame& frame, std::vector<std::string>& warnings) const;
+  Images rectifyPair(const StereoFrame& frame, const Images& raw, FrameReport& report);
+  MaskPair masksFor(cv::Size size) const;
   Pipeline& pipelineFor(const NodeSettings& settings);
   void followTime(const ros::Time& stamp);
 
   Seeds externalSeeds(const SeedRequest& request, FrameReport& report) const;
+  PipelineResult runPipeline(const Images& images, const Seeds& external, const NodeSettings& settings, bool quality,
+                             const std::atomic<bool>* cancel);
   void fillReport(PipelineResult& result, FrameReport& report);
 
   StereoTopics topics_;
   SeedProvider seeds_;
   MaskProvider masks_;
+  InputImages images_;
+  Rectifier left_rectifier_, right_rectifier_;
   std::unique_ptr<Pipeline> pipeline_;
   unsigned revision_ = 0;
   ros::Time last_stamp_;

@@ -125,6 +125,7 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
   diagnostics.add("Age of the output (ms)", age(now.age_ms));
   diagnostics.addf("Stamps of left and right apart (ms)", "%.1f", now.apart_ms);
+  if (now.frame.rectification_ms > 0.0) diagnostics.addf("Rectification (ms)", "%.1f", now.frame.rectification_ms);
   for (const StageTime& time : now.frame.pipeline.times)
     diagnostics.addf("Stage " + time.stage + " (ms)", "%.1f", time.ms);
   diagnostics.add("Seeds of other sensors", now.frame.external_seeds);

@@ -4,7 +4,7 @@
 
 namespace fdp_stereo {
 
-void OutputTopics::advertise(ros::NodeHandle& node, const std::function<void()>& changed) {
+void OutputTopics::advertise(ros::NodeHandle& node, InputImages images, const std::function<void()>& changed) {
   image_transport::ImageTransport transport(node);
   const ros::SubscriberStatusCallback on_change = [=](const ros::SingleSubscriberPublisher&) { changed(); };
   const image_transport::SubscriberStatusCallback on_image_change =
@@ -20,13 +20,16 @@ void OutputTopics::advertise(ros::NodeHandle& node, const std::function<void()>&
   depth_error_ = advertiseImage("depth_error");
   seeds_ = advertiseImage("seeds/image");
   disparity_color_ = advertiseImage("disparity_color");
+  if (images == InputImages::kRaw) left_rectified_ = advertiseImage("left/image_rect");
 }
 
 void OutputTopics::shutdown() {
   disparity_.shutdown();
   depth_.shutdown();
-  for (auto* images : {&depth_by_old_name_, &confidence_, &depth_error_, &seeds_, &disparity_color_})
+  for (auto* images :
+       {&depth_by_old_name_, &confidence_, &depth_error_, &seeds_, &disparity_color_, &left_rectified_}) {
     images->shutdown();
+  }
 }
 
 WantedOutputs OutputTopics::wanted() const {
@@ -37,6 +40,7 @@ WantedOutputs OutputTopics::wanted() const {
   outputs.depth_error = depth_error_.getNumSubscribers() > 0;
   outputs.seeds = seeds_.getNumSubscribers() > 0;
   outputs.disparity_color = disparity_color_.getNumSubscribers() > 0;
+  outputs.left_rectified = left_rectified_.getNumSubscribers() > 0;
   return outputs;
 }
 
@@ -50,6 +54,7 @@ void OutputTopics::publish(const FrameOutput& output) const {
   if (output.depth_error) depth_error_.publish(output.depth_error);
   if (output.seeds) seeds_.publish(output.seeds);
   if (output.disparity_color) disparity_color_.publish(output.disparity_color);
+  if (output.left_rectified) left_rectified_.publish(output.left_rectified);
 }
 
 }  // namespace fdp_stereo

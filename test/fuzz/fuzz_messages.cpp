@@ -121,16 +121,35 @@ NodeSettings takeSettings(Input& input) {
   return settings;
 }
 
+/// What rectification reads of a calibration.
+void takeRawCalibration(Input& input, sensor_msgs::CameraInfo& info) {
+  static const char* const kModels[] = {"plumb_bob", "rational_polynomial", "equidistant", ""};
+  const auto kind = input.take<std::uint8_t>();
+  info.distortion_model = kModels[kind % 4];
+  for (int i = 0; i < kind / 4 % 16; ++i) info.D.push_back(0.01 * input.take<std::int8_t>());
+  info.K = {18.0, 0.0, 8.0, 0.0, 19.0, 8.0, 0.0, 0.0, 1.0};
+  info.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  for (int i = 0; i < kind / 64; ++i) {
+    const auto place = input.take<std::uint8_t>();
+    (place % 2 == 0 ? info.K : info.R)[place / 2 % 9] = input.take<double>();
+  }
+}
+
 void fuzzPair(Input& input) {
   sensor_msgs::Image left = takeImage(input);
   sensor_msgs::Image right = input.take<std::uint8_t>() < 200 ? left : takeImage(input);
   StereoFrame frame;
-  frame.left_info = boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, left.width, left.height));
-  frame.right_info = boost::make_shared<sensor_msgs::CameraInfo>(takeInfo(input, left.width, left.height));
+  sensor_msgs::CameraInfo left_info = takeInfo(input, left.width, left.height);
+  sensor_msgs::CameraInfo right_info = takeInfo(input, left.width, left.height);
   frame.left = boost::make_shared<sensor_msgs::Image>(left);
   frame.right = boost::make_shared<sensor_msgs::Image>(right);
   const NodeSettings settings = takeSettings(input);
-  FrameProcessor processor({});
+  const bool raw = input.take<std::uint8_t>() % 2 != 0;
+  if (raw) takeRawCalibration(input, left_info);
+  if (raw) takeRawCalibration(input, right_info);
+  frame.left_info = boost::make_shared<sensor_msgs::CameraInfo>(left_info);
+  frame.right_info = boost::make_shared<sensor_msgs::CameraInfo>(right_info);
+  FrameProcessor processor({}, nullptr, nullptr, raw ? InputImages::kRaw : InputImages::kRectified);
   expectOnlyInvalid([&] { processor.process(frame, settings, {true, true, true, true}); });
 }
 

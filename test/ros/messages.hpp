@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <boost/make_shared.hpp>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -95,6 +97,20 @@ struct Messages {
   }
 };
 
+/// What a camera with this calibration sees where a rectified one sees `rectified`.
+inline cv::Mat rawImage(const cv::Mat& rectified, const sensor_msgs::CameraInfo& info) {
+  std::vector<cv::Point2f> places;
+  for (int y = 0; y < rectified.rows; ++y) {
+    for (int x = 0; x < rectified.cols; ++x) places.emplace_back(x, y);
+  }
+  std::vector<cv::Point2f> seen;
+  cv::undistortPoints(places, seen, cv::Matx33d(info.K.data()), info.D, cv::Matx33d(info.R.data()),
+                      cv::Matx34d(info.P.data()));
+  cv::Mat raw;
+  cv::remap(rectified, raw, cv::Mat(seen).reshape(2, rectified.rows), cv::noArray(), cv::INTER_CUBIC);
+  return raw;
+}
+
 constexpr int kPlaneDisparity = 9;
 constexpr double kFocal = 200.0;
 constexpr double kBaseline = 0.1;
@@ -109,7 +125,25 @@ inline Messages goodMessages(int width = 160, int height = 120) {
   return messages;
 }
 
-/// The same with the noise of a sensor, another one for every `number`.
+/// The same as its cameras see it before it is rectified: distorted, turned, of other focal lengths.
+inline Messages rawMessages() {
+  Messages messages = goodMessages(240, 180);
+  const PlanePair pair = planePair(240, 180, kPlaneDisparity);
+  const auto spoil = [](sensor_msgs::CameraInfo& info, const cv::Mat& rectified, double turn) {
+    info.D = {-0.25, 0.06, 0.0005, -0.0003, 0.0};
+    info.K = {225.0, 0.0, 118.0, 0.0, 226.0, 92.0, 0.0, 0.0, 1.0};
+    cv::Mat rotation;
+    cv::Rodrigues(cv::Vec3d(0.01, turn, -0.015), rotation);
+    std::copy(rotation.begin<double>(), rotation.end<double>(), info.R.begin());
+    return imageMessage(rawImage(rectified, info), "mono8");
+  };
+  messages.left = spoil(messages.left_info, pair.left, 0.02);
+  messages.right = spoil(messages.right_info, pair.right, -0.01);
+  messages.stamp(ros::Time(1.0));
+  return messages;
+}
+
+/// The good pair with the noise of a sensor, another one for every `number`.
 inline Messages noisyMessages(int number, double seconds) {
   Messages messages = goodMessages();
   cv::RNG random(static_cast<std::uint64_t>(number) + 1);

@@ -87,9 +87,9 @@ class Inbox {
 /// Publishes pairs as a camera driver does.
 class Camera {
  public:
-  explicit Camera(const std::string& name) : node_(name) {
-    left_ = node_.advertise<sensor_msgs::Image>("left/image_rect", 10);
-    right_ = node_.advertise<sensor_msgs::Image>("right/image_rect", 10);
+  explicit Camera(const std::string& name, const std::string& image = "image_rect") : node_(name) {
+    left_ = node_.advertise<sensor_msgs::Image>("left/" + image, 10);
+    right_ = node_.advertise<sensor_msgs::Image>("right/" + image, 10);
     left_info_ = node_.advertise<sensor_msgs::CameraInfo>("left/camera_info", 10);
     right_info_ = node_.advertise<sensor_msgs::CameraInfo>("right/camera_info", 10);
   }
@@ -123,7 +123,10 @@ class NodeletGraph {
  public:
   /// params: private parameters, set before the nodelet is loaded.
   explicit NodeletGraph(const std::string& name, const std::map<std::string, XmlRpc::XmlRpcValue>& params = {})
-      : name_(name), node_(name), camera_(name), loader_(false) {
+      : name_(name),
+        node_(name),
+        camera_(name, params.count("rectify") != 0 ? "image_raw" : "image_rect"),
+        loader_(false) {
     ros::param::del(nodeletName());
     ros::param::set(nodeletName() + "/disparity_range", 32);
     ros::param::set(nodeletName() + "/diagnostic_period", 0.05);

@@ -103,18 +103,18 @@ class ProcessBagTest(unittest.TestCase):
         with rosbag.Bag(self.output) as bag:
             return [message for _, message, _ in bag.read_messages(topics=[topic])]
 
-    def expected_disparity(self, depth=np.uint8):
+    def expected_disparity(self, depth=np.uint8, options=()):
         """What match says, in published units: NaN where there is no answer or the match is outside the right image."""
         cv2.imwrite(self.path("left.png"), self.left.astype(depth))
         cv2.imwrite(self.path("right.png"), self.right.astype(depth))
         code, _, err = run("match", self.path("left.png"), self.path("right.png"), "-o", self.path("d.pfm"),
-                           "--num-disparities", 16, "--overwrite")
+                           "--num-disparities", 16, "--overwrite", *options)
         self.assertEqual(code, 0, err)
         disparity = read_pfm(self.path("d.pfm"))
         return np.where(np.isfinite(disparity), disparity - np.float32(CX_LEFT - CX_RIGHT), np.nan)
 
-    def check_disparities(self, frames, depth=np.uint8):
-        expected = self.expected_disparity(depth)
+    def check_disparities(self, frames, depth=np.uint8, options=()):
+        expected = self.expected_disparity(depth, options)
         found = self.messages("/stereo/disparity")
         self.assertEqual(len(found), frames)
         for message in found:
@@ -340,7 +340,7 @@ class ProcessBagTest(unittest.TestCase):
                 info.R = turn.ravel().tolist() if side == "left" else list(info.R)
                 info.K[0] = info.K[4] = 190.0
             self.write_messages(change=change, frames=1)
-            views = {}
+            views, masks = {}, []
             with rosbag.Bag(self.input) as bag:
                 for topic, message, _ in bag.read_messages():
                     if topic.endswith("camera_info"):
@@ -349,10 +349,26 @@ class ProcessBagTest(unittest.TestCase):
                                                            self.left.shape[1::-1], cv2.CV_16SC2)
                         side = topic.split("/")[2]
                         views[side] = cv2.remap(getattr(self, side), *maps, cv2.INTER_LINEAR)
+                        shown = cv2.remap(np.full(self.left.shape[:2], 255, np.uint8), *maps, cv2.INTER_LINEAR)
+                        cv2.imwrite(self.path(side + "_mask.png"), np.where(shown < 255, 255, 0).astype(np.uint8))
+                        masks += ["--%s-mask" % side, self.path(side + "_mask.png")]
             self.process("--image-name", "image_rect", "--rectify", "--overwrite")
             self.left, self.right, kept = views["left"], views["right"], (self.left, self.right)
-            self.check_disparities(1)
+            self.check_disparities(1, options=masks)
             self.left, self.right = kept
+
+    def test_masks_are_those_of_match(self):
+        mask = np.zeros(self.left.shape[:2], np.uint8)
+        mask[10:30, 20:60] = 255
+        cv2.imwrite(self.path("mask.png"), mask)
+        self.write_bag()
+        masks = ["--left-mask", self.path("mask.png"), "--right-mask", self.path("mask.png")]
+        self.process(*masks)
+        self.check_disparities(3, options=masks)
+        cv2.imwrite(self.path("mask.png"), mask[5:])
+        for given in (self.path("mask.png"), "/does/not/exist.png"):
+            _, err = self.process("--overwrite", "--right-mask", given, code=1)
+            self.assertIn(given, err)
 
     def test_earlier_results_are_replaced(self):
         self.write_messages()

@@ -65,6 +65,15 @@ cv::Mat toMask(const cv::Mat& picture) {
   return brightest >= (picture.depth() == CV_8U ? 128 : 32768);
 }
 
+cv::Mat readMask(const std::string& path, cv::Size size) {
+  if (path.empty()) return {};
+  cv::Mat mask = toMask(readImage(path));
+  if (mask.size() == size) return mask;
+  throw std::runtime_error(path + ": a mask of " + std::to_string(mask.cols) + " x " + std::to_string(mask.rows) +
+                           " px, but the image has " + std::to_string(size.width) + " x " +
+                           std::to_string(size.height));
+}
+
 bool isImageName(const std::string& path) {
   const std::string type = extension(path);
   return std::find(kImageExtensions.begin(), kImageExtensions.end(), type) != kImageExtensions.end();
