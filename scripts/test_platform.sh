@@ -38,7 +38,7 @@ fi
 mkdir -p "$root"
 
 leave() {
-  umount "$root/proc" 2>/dev/null || true
+  umount "$root/dev/pts" "$root/proc" 2>/dev/null || true
   if $remove; then rm -rf --one-file-system "$(dirname "$root")"; fi
 }
 trap leave EXIT
@@ -122,6 +122,7 @@ test_bare() {
 
 make_root
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+mountpoint -q "$root/dev/pts" || mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts" # catkin build opens one
 copy_sources
 case "$name" in
   debian-13) test_debian_13 ;;

@@ -11,6 +11,7 @@ set +u
 . "$1/setup.bash"
 set -u
 work="$(mktemp -d)"
+export PYTHONUNBUFFERED=1 # what a program in the background prints can be read at once
 export ROS_MASTER_URI="http://localhost:$2" ROS_HOME="$work" ROS_LOG_DIR="$work"
 trap 'jobs -p | xargs -r kill 2>/dev/null || true; rm -rf "$work"' EXIT
 
