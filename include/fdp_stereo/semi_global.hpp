@@ -14,7 +14,7 @@ namespace fdp_stereo {
 struct SemiGlobalParams {
   double p1 = 0.6;            ///< cost units: disparity changes by 1
   double p2 = 2.7;            ///< cost units: disparity changes by more
-  double p2_gradient = 0.04;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
+  double p2_gradient = 0.045;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
   SubpixelFit subpixel = SubpixelFit::kBlended;
   double uniqueness_ratio = 0.0;  ///< %, as stereo_image_proc
 };
