@@ -21,6 +21,7 @@ if(CATKIN_ENABLE_TESTING)
     set(launch ${PROJECT_SOURCE_DIR}/test/ros/${name}.test)
     add_executable(${name}_test EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/test/ros/${name}_test.cpp)
     target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/test)
+    target_compile_options(${name}_test PRIVATE ${FDP_STEREO_TEST_OPTIONS})
     target_compile_definitions(${name}_test PRIVATE FDP_STEREO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
       FDP_STEREO_TOOL_DIR="${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}")
     target_link_libraries(${name}_test PRIVATE fdp_stereo_nodelet GTest::gtest)

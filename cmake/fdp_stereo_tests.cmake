@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Every test/core/<stage>_test.cpp is a gtest of its own, run by ctest.
+set(FDP_STEREO_TEST_OPTIONS $<$<CONFIG:Release>:-O1>) # compiling the tests takes longer than running them
 file(GLOB FDP_STEREO_CORE_TESTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/core/*_test.cpp)
 foreach(source IN LISTS FDP_STEREO_CORE_TESTS)
   get_filename_component(name ${source} NAME_WE)
   add_executable(${name} EXCLUDE_FROM_ALL ${source})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/core)
   target_compile_definitions(${name} PRIVATE FDP_STEREO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(${name} PRIVATE ${FDP_STEREO_TEST_OPTIONS})
   target_link_libraries(${name} PRIVATE fdp_stereo_evaluation GTest::gtest GTest::gtest_main OpenMP::OpenMP_CXX)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS core)
