@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The network of matching_cost.type learned, and the weights file that the library reads."""
-import zlib
+import hashlib
 
 import numpy as np
 import torch
@@ -71,7 +71,7 @@ def integers(network):
 
 
 def write(network, path):
-    """One line per filter: weights by row, column, input channel, then the bias. Ends with a CRC-32 of what is above."""
+    """One line per filter: weights by row, column, input channel, then the bias. Ends with the SHA-256 of what is above."""
     lines = ['fdp_stereo_cost_network 1', 'channels ' + ' '.join(map(str, CHANNELS)),
              'floor %d' % round(float(torch.exp(network.log_floor)) * 65536)]
     for weights, biases in integers(network):
@@ -80,4 +80,4 @@ def write(network, path):
             lines.append(' '.join(map(str, numbers)) + ' ' + str(bias))
     text = '\n'.join(lines) + '\n'
     with open(path, 'w') as file:
-        file.write(text + 'crc32 %08x\n' % zlib.crc32(text.encode()))
+        file.write(text + 'sha256 %s\n' % hashlib.sha256(text.encode()).hexdigest())
