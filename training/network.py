@@ -7,7 +7,7 @@ import numpy as np
 import torch
 import torch.nn.functional as functional
 
-CHANNELS = 16, 16, 24
+CHANNELS = 24, 24, 32
 SIDES = 5, 3, 3
 REACH = 4  # px around a pixel that its descriptor sees
 INPUT_SCALE = 32.0  # grey levels per 1

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Trains the network of matching_cost.type learned on synthetic pairs, through the scanline optimisation that follows it."""
 import argparse
+import collections
 import math
 import time
 
@@ -18,8 +19,13 @@ import photos
 DISPARITIES = 80
 ROWS = 12  # of a crop; every second counts
 CROPS = 6  # per step
-EDGE_WEIGHT = 3.0  # of pixels within 4 px of a depth edge: a cost must not fatten them
 LEAST = 1e4  # more than any cost
+
+# The first steps of `schedule`: at first without the scanline optimisation. Shares of noisy, and of dark and of compressed
+# pairs; the weight of pixels within 4 px of a depth edge, which a cost must not fatten. Bad images come first: with them to
+# the end the network blurs the edges of good ones.
+Phase = collections.namedtuple('Phase', 'steps schedule unsmoothed rate noisy spoilt edge_weight')
+PHASES = Phase(1800, 3600, 540, 3e-3, 0.35, 0.15, 3.0), Phase(400, 400, 0, 1.5e-3, 0.08, 0.04, 5.0)
 
 
 # Cameras: what happens to one view (H x W, 0..255) on its way into memory.
@@ -49,11 +55,11 @@ def compressed(image, quality):
 class Camera:
     """What both views of a pair have in common: sensor and compression."""
 
-    def __init__(self, rng):
-        bad = rng.random() < 0.35
+    def __init__(self, rng, phase):
+        bad = rng.random() < phase.noisy
         self.noise = math.exp(rng.uniform(0.7, 2.0) if bad else rng.uniform(-1.6, 0.7))
-        self.gain = rng.uniform(0.15, 0.6) if rng.random() < 0.15 else 1.0
-        self.quality = int(rng.integers(20, 85)) if rng.random() < 0.15 else 0
+        self.gain = rng.uniform(0.15, 0.6) if rng.random() < phase.spoilt else 1.0
+        self.quality = int(rng.integers(20, 85)) if rng.random() < phase.spoilt else 0
 
     def take(self, rng, image):
         if rng.random() < 0.3:
@@ -69,10 +75,10 @@ class Camera:
 class Batch:
     """Crops of pairs as two cameras saw them."""
 
-    def __init__(self, rng, data, crops, rows):
+    def __init__(self, rng, phase, data, crops, rows):
         left, right, disparity, visible, weight = [], [], [], [], []
         for _ in range(crops):
-            views, d, mask = self.pair_of(rng, data)
+            views, d, mask = self.pair_of(rng, phase, data)
             top = rng.integers(d.shape[0] - rows - 2 * network.REACH + 1)
             whole = slice(top, top + rows + 2 * network.REACH)
             seen = slice(top + network.REACH, top + network.REACH + rows)
@@ -82,7 +88,7 @@ class Batch:
             right.append(views[1][whole])
             disparity.append(d[seen, inner][::2])
             visible.append((mask[seen, inner] == 255)[::2])
-            weight.append(np.where(near_edge, EDGE_WEIGHT, 1.0)[seen, inner][::2])
+            weight.append(np.where(near_edge, phase.edge_weight, 1.0)[seen, inner][::2])
         as_input = lambda crop: torch.from_numpy(np.stack(crop).astype(np.float32))[:, None]
         self.left, self.right = as_input(left), as_input(right)
         self.disparity = torch.from_numpy(np.concatenate(disparity).astype(np.float32))
@@ -90,7 +96,7 @@ class Batch:
         self.weight = torch.from_numpy(np.concatenate(weight).astype(np.float32))
 
     @staticmethod
-    def pair_of(rng, data):
+    def pair_of(rng, phase, data):
         chosen = rng.integers(len(data[0]))
         left, right, disparity, mask = [values[chosen] for values in data]
         if rng.random() < 0.5:
@@ -98,7 +104,7 @@ class Batch:
         left, right = left.astype(np.float32), right.astype(np.float32)
         if rng.random() < 0.3:
             left, right = 255 - left, 255 - right
-        camera = Camera(rng)
+        camera = Camera(rng, phase)
         return [camera.take(rng, np.ascontiguousarray(view)) for view in (left, right)], disparity, mask
 
 
@@ -176,8 +182,9 @@ class Loss(torch.nn.Module):
         return loss, wrong[counted].float().mean().item()
 
 
-def learning_rate(share):
-    return 3e-3 * min(1.0, share / 0.02 + 0.02) * (1 if share < 0.3 else 0.5 + 0.5 * math.cos(math.pi * (share - 0.3) / 0.7))
+def learning_rate(phase, step):
+    share = step / phase.schedule
+    return phase.rate * min(1.0, share / 0.02 + 0.02) * (1 if share < 0.3 else 0.5 + 0.5 * math.cos(math.pi * (share - 0.3) / 0.7))
 
 
 def validate(net, loss, batches):
@@ -186,32 +193,29 @@ def validate(net, loss, batches):
     return np.mean([float(value) for value, _ in results]), 100 * np.mean([wrong for _, wrong in results])
 
 
-def train(data, held_back, steps, seed, report):
-    torch.manual_seed(seed)
+def train(net, phase, data, held_back, seed, report):
     rng = np.random.default_rng(seed)
-    batches = [Batch(np.random.default_rng(99 + i), held_back, 8, 24) for i in range(4)]
-    net, loss = network.Network(), Loss()
+    batches = [Batch(np.random.default_rng(99 + i), phase, held_back, 8, 24) for i in range(4)]
+    loss = Loss()
     optimizer = torch.optim.Adam(list(net.parameters()) + list(loss.parameters()), betas=(0.9, 0.98))
-    for step in range(steps):
-        if step % max(steps // 10, 1) == 0:
+    for step in range(phase.steps):
+        if step % (phase.steps // 5) == 0:
             report(net, step, *validate(net, loss, batches))
         for group in optimizer.param_groups:
-            group['lr'] = learning_rate(step / steps)
-        value, _ = loss(net, Batch(rng, data, CROPS, ROWS), step >= 0.15 * steps)
+            group['lr'] = learning_rate(phase, step)
+        value, _ = loss(net, Batch(rng, phase, data, CROPS, ROWS), step >= phase.unsmoothed)
         optimizer.zero_grad()
         value.backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 2.0)
         optimizer.step()
-    report(net, steps, *validate(net, loss, batches))
-    return net
+    report(net, phase.steps, *validate(net, loss, batches))
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('photos', help='folder into which the packages of the photos were unpacked')
     parser.add_argument('weights', help='file to write')
-    parser.add_argument('--shards', type=int, default=4, help='of 300 pairs')
-    parser.add_argument('--steps', type=int, default=1600)
+    parser.add_argument('--shards', type=int, default=6, help='of 300 pairs')
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--threads', type=int, default=2)
     return parser.parse_args()
@@ -229,7 +233,10 @@ def main():
 
     data = pairs.make_shards(options.photos, photos.TRAINING, options.shards, 300, 1001, options.threads)
     held_back = pairs.make_pairs(options.photos, photos.VALIDATION, 100, 1000)
-    train(data, held_back, options.steps, options.seed, report)
+    torch.manual_seed(options.seed)
+    net = network.Network()
+    for phase in PHASES:
+        train(net, phase, data, held_back, options.seed, report)
 
 
 if __name__ == '__main__':
