@@ -12,7 +12,7 @@
 
 namespace fdp_stereo {
 
-enum class MatchingCostType { kRhoCensus, kAdCensus, kCensus, kRho, kBirchfieldTomasi };
+enum class MatchingCostType { kRhoCensus, kAdCensus, kCensus, kRho, kBirchfieldTomasi, kLearned };
 
 /// Costs where x - d is outside the right image.
 enum class CostBorder {
@@ -31,7 +31,8 @@ struct MatchingCostParams {
   double lambda_rho = 4.0;                                  ///< eq. (9)
   double lambda_census = 15.0;                              ///< eq. (9)
   double lambda_ad = 10.0;                                  ///< eq. (6)
-  double rho_weight = 0.7;  ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
+  double rho_weight = 0.7;      ///< factor of the theta(rho) or theta(AD) term; 1 in the paper
+  double learned_weight = 0.3;  ///< share of the learned cost beside that of kRhoCensus
   CostBorder border = CostBorder::kRepeatDisparity;
   bool adapt = true;  ///< smooth what noise, compression or one view out of focus have spoilt
 };

@@ -139,7 +139,9 @@ FDP_STEREO_INSTANTIATE_INSTRUCTION_SETS(MatchingCostKernel);
 
 TEST_P(MatchingCostKernel, GivesTheSameBits) {
   const StereoPair pair = prepareImages(reference::texture(13, 53, CV_8UC3, 7), reference::texture(13, 53, CV_8UC3, 8));
-  for (const MatchingCostType type : kTypes) {
+  std::vector<MatchingCostType> types(std::begin(kTypes), std::end(kTypes));
+  types.push_back(MatchingCostType::kLearned);
+  for (const MatchingCostType type : types) {
     for (const int bits : {8, 16}) {
       const auto volume = [&] { return volumeOf(pair, {-2, 37}, paramsOf(type, 3), bits); };
       expectEqual(onThisSet(volume), onBaseline(volume));

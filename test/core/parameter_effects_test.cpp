@@ -108,6 +108,8 @@ std::vector<PipelineParams> setups() {
   setup.optimizer = OptimizerType::kWinnerTakesAll;
   setup.hole_filling.enabled = true;
   all.push_back(setup);
+  setup.matching_cost.type = MatchingCostType::kLearned;
+  all.push_back(setup);
   setup = loadPreset("accurate");
   setup.search = {0, 24};
   setup.local_expansion.disparity_steps = 1;

@@ -9,9 +9,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "costs/cost_network.hpp"
 #include "costs/image_planes.hpp"
 #include "images/colour.hpp"
 #include "parallel.hpp"
+#include "simd/cost_network_kernels.hpp"
 #include "simd/matching_cost_kernels.hpp"
 
 namespace fdp_stereo {
@@ -23,10 +25,10 @@ constexpr int kUnitsPerBit = 16;    // fixed point of S_census
 bool usesColour(MatchingCostType type) { return type != MatchingCostType::kCensus; }
 bool usesCensus(MatchingCostType type) {
   return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kAdCensus ||
-         type == MatchingCostType::kCensus;
+         type == MatchingCostType::kCensus || type == MatchingCostType::kLearned;
 }
 bool usesGradient(MatchingCostType type) {
-  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kRho;
+  return type == MatchingCostType::kRhoCensus || type == MatchingCostType::kRho || type == MatchingCostType::kLearned;
 }
 
 /// theta of eq. (5).
@@ -61,8 +63,10 @@ void fillThetaTable(double units, double lambda, double weight, double step, int
 struct MatchingCost::Source {
   CensusParams census;
   ImagePlanes left, right;
-  cv::Mat left_grey8, right_grey8;            // of 16-bit colour images
-  cv::Mat left_blurred[3], right_blurred[3];  // one per scale
+  cv::Mat left_grey8, right_grey8;              // of 16-bit colour images
+  cv::Mat left_blurred[3], right_blurred[3];    // one per scale
+  cv::Mat left_descriptors, right_descriptors;  // of the learned cost
+  LearnedMix learned{};
   int scales = 0;
   std::uint16_t bit_weights[3] = {};  // fixed-point w_i of eq. (7)
   int shift = 0;
@@ -75,6 +79,7 @@ struct MatchingCost::Source {
   void load(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale);
   /// Lets go of the images.
   void release();
+  void loadLearned(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale);
   void loadCensus(const StereoPair& pair, const MatchingCostParams& params);
   void loadTheta(const MatchingCostParams& params, const CostScale& scale);
 };
@@ -116,6 +121,17 @@ void MatchingCost::Source::loadTheta(const MatchingCostParams& params, const Cos
   }
 }
 
+void MatchingCost::Source::loadLearned(const StereoPair& pair, const MatchingCostParams& params,
+                                       const CostScale& scale) {
+  learned.largest = static_cast<std::uint16_t>(std::lround(maxMatchingCost(params) / scale.step));
+  learned.share = 0;
+  if (params.type != MatchingCostType::kLearned) return;
+  learned.share = static_cast<std::uint16_t>(std::lround(params.learned_weight * 256.0));
+  const CostNetwork& network = CostNetwork::builtIn();
+  network.describe(eightBitGrey(pair.left, pair.left_grey, left_grey8), left_descriptors);
+  network.describe(eightBitGrey(pair.right, pair.right_grey, right_grey8), right_descriptors);
+}
+
 void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale) {
   const cv::Mat& grey_left = eightBitGrey(pair.left, pair.left_grey, left_grey8);
   const cv::Mat& grey_right = eightBitGrey(pair.right, pair.right_grey, right_grey8);
@@ -134,6 +150,7 @@ void MatchingCost::Source::load(const StereoPair& pair, const MatchingCostParams
   scales = 0;
   if (usesCensus(params.type)) loadCensus(pair, params);
   loadTheta(params, scale);
+  loadLearned(pair, params, scale);
 }
 
 void MatchingCost::Source::release() {
@@ -165,9 +182,11 @@ struct RowScratch {
   std::vector<std::uint64_t> left_codes, right_codes;  // [scale]; right ones reversed
   std::vector<std::int16_t> planes;                    // of the right row, as they come
   std::vector<std::uint64_t> codes;
-  std::vector<std::uint8_t> left_bits, right_bits, bits;  // codes in bytes; right ones reversed
-  std::vector<std::uint8_t> rho_costs;                    // of one pixel
-  std::vector<std::uint16_t> rho, census, combined;       // of one pixel
+  std::vector<std::uint8_t> left_bits, right_bits, bits;          // codes in bytes; right ones reversed
+  std::vector<std::uint8_t> rho_costs;                            // of one pixel
+  std::vector<std::uint16_t> rho, census, combined;               // of one pixel
+  std::vector<std::int16_t> left_descriptors, right_descriptors;  // of the row; right ones reversed, in pairs
+  std::vector<std::uint16_t> unlikeness;                          // of one pixel
 };
 
 void loadPlanes(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
@@ -206,9 +225,26 @@ void loadBytes(const CostSource& source, int y, int width, int min, int length, 
   }
 }
 
+void loadDescriptors(const CostSource& source, int y, int width, int min, int length, RowScratch& scratch) {
+  const int channels = CostNetwork::builtIn().length();
+  const auto* left = source.left_descriptors.ptr<std::int8_t>(y);
+  scratch.left_descriptors.assign(left, left + static_cast<std::ptrdiff_t>(width) * channels);
+  const auto* right = source.right_descriptors.ptr<std::int8_t>(y);
+  scratch.right_descriptors.resize(static_cast<std::size_t>(length) * channels);
+  for (int t = 0; t < length; ++t) {
+    const std::int8_t* from =
+        right + static_cast<std::ptrdiff_t>(std::clamp(width - 1 - min - t, 0, width - 1)) * channels;
+    for (int c = 0; c < channels; ++c) {
+      scratch.right_descriptors[2 * (static_cast<std::size_t>(c / 2) * length + t) + c % 2] = from[c];
+    }
+  }
+}
+
 void loadRow(const CostSource& source, int y, int width, const CostVolume& volume, RowScratch& scratch) {
   const int length = width + volume.stride();
   if (source.left.count() > 0) loadPlanes(source, y, width, volume.range().min, length, scratch);
+  if (source.learned.share > 0) loadDescriptors(source, y, width, volume.range().min, length, scratch);
+  scratch.unlikeness.resize(volume.stride());
   (source.in_bytes ? loadBytes : loadCodes)(source, y, width, volume.range().min, length, scratch);
   scratch.rho.assign(volume.stride(), 0);
   scratch.census.assign(volume.stride(), 0);
@@ -287,6 +323,26 @@ void costsOfPixel(const CostSource& source, MatchingCostType type, int x, int wi
   tableCosts(source, type, x, width, scratch, count, stride, costs);
 }
 
+void mix(const CostNetworkKernels& kernels, const std::uint16_t* values, LearnedMix share, int count,
+         std::uint8_t* costs) {
+  kernels.mixU8(values, share, count, costs);
+}
+void mix(const CostNetworkKernels& kernels, const std::uint16_t* values, LearnedMix share, int count,
+         std::uint16_t* costs) {
+  kernels.mixU16(values, share, count, costs);
+}
+
+/// Mixes the learned costs of one pixel into the others.
+template <typename T>
+void addLearned(const CostSource& source, int x, int width, RowScratch& scratch, int count, int stride, T* costs) {
+  const CostNetworkKernels& kernels = FDP_STEREO_SELECT(costNetworkKernels);
+  const int channels = CostNetwork::builtIn().length();
+  kernels.dissimilarities(scratch.left_descriptors.data() + static_cast<std::ptrdiff_t>(x) * channels,
+                          scratch.right_descriptors.data() + 2 * (width - 1 - x), channels / 2, width + stride, count,
+                          scratch.unlikeness.data());
+  mix(kernels, scratch.unlikeness.data(), source.learned, count, costs);
+}
+
 /// Repeats the nearest valid cost along d where x - d is outside the right image.
 template <typename T>
 void repeatBorder(T* costs, int x, int width, DisparityRange range, int stride, T max_raw) {
@@ -323,6 +379,7 @@ void fillVolume(const CostSource& source, const MatchingCostParams& params, Cost
     for (int x = 0; x < width; ++x) {
       T* costs = volume.at<T>(y, x);
       costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
+      if (source.learned.share > 0) addLearned(source, x, width, scratch, volume.range().count, volume.stride(), costs);
       repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
     }
     if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);

@@ -95,8 +95,9 @@ void addRowAlignment(ParamList& list, RowAlignmentParams& p) {
 
 void addMatchingCost(ParamList& list, MatchingCostParams& p) {
   list.stage("matching_cost");
-  list.add("type", p.type, {"rho_census", "ad_census", "census", "rho", "birchfield_tomasi"},
-           "Measure of dissimilarity: rho_census (eq. 9), ad_census (eq. 6), or one part alone.");
+  list.add("type", p.type, {"rho_census", "ad_census", "census", "rho", "birchfield_tomasi", "learned"},
+           "Measure of dissimilarity: rho_census (eq. 9), ad_census (eq. 6), one part alone, or learned: a small "
+           "network beside rho_census.");
   list.add("census_width", p.census.window_width, 1, 31, "px",
            "Width of the census window, odd; larger holds weak texture and smears edges.");
   list.add("census_height", p.census.window_height, 1, 31, "px",
@@ -108,6 +109,8 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
            "Scale of the census distance in theta (eq. 9); smaller saturates sooner.");
   list.add("rho_weight", p.rho_weight, 0.0, 4.0, "",
            "Factor of the rho or AD term beside the census term; 1 in the paper.");
+  list.add("learned_weight", p.learned_weight, 0.0, 1.0, "",
+           "Type learned: share of the network's cost; the rest is that of rho_census.");
   list.add("border", p.border, {"repeat_disparity", "repeat_pixel"},
            "Costs whose match is outside the right image: the pixel's nearest valid one along the disparities, or that "
            "of the nearest pixel of the row.");
