@@ -12,8 +12,8 @@ namespace fdp_stereo {
 
 /// Semi-global matching (Hirschmueller, PAMI 2008) along four paths: both ways along rows and columns.
 struct SemiGlobalParams {
-  double p1 = 0.6;            ///< cost units: disparity changes by 1
-  double p2 = 2.7;            ///< cost units: disparity changes by more
+  double p1 = 0.6;             ///< cost units: disparity changes by 1
+  double p2 = 2.7;             ///< cost units: disparity changes by more
   double p2_gradient = 0.045;  ///< P2 / (1 + p2_gradient * |dI|), dI in grey levels along the path; never below p1
   SubpixelFit subpixel = SubpixelFit::kBlended;
   double uniqueness_ratio = 0.0;  ///< %, as stereo_image_proc
