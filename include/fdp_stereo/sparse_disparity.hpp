@@ -8,7 +8,7 @@ namespace fdp_stereo {
 
 /// Stage 5: matches (and other sensors' depth) to seeds (paper 3.2).
 struct SparseDisparityParams {
-  bool features = false;             ///< feature matches become seeds
+  bool features = false;             ///< spread feature matches; else they vouch for other seeds
   bool reject_outliers = true;       ///< row residual and neighbourhood; the paper trusts every match
   double max_row_residual_px = 0.3;  ///< of a match after row alignment
   double max_deviation_px = 0.67;    ///< mean deviation (0..2) of small windows around a match from its disparity

@@ -204,7 +204,11 @@ TEST(Yaml, TakesTheDumpOfANode) {
   const std::string values =
       "  disparity_range: 96\n  hole_filling_enabled: true\n  optimizer_type: 0\n  semi_global_p2: 2.5\n"
       "  max_rate: 5.0\n  seeds_points_trust: 0.9\n  preset: custom\n";
-  const std::string rosparam = values + "  queue_size: 5\n  approximate_sync: false\n  params: 'search: {x: 1}'\n";
+  const std::string rosparam = values +
+                               "  queue_size: 5\n  approximate_sync: false\n  params: 'search: {x: 1}'\n"
+                               "  left_mask: ''\n  right_mask: arm.png\n  rectify: internal\n  nearest: 0.5\n"
+                               "  approximate_sync_tolerance: 0.0\n  image_transport: raw\n  seeds_fixed_frame: odom\n"
+                               "  diagnostic_period: 1.0\n  watch_period: 15.0\n";
   const std::string dynparam = "!!python/object/new:dynamic_reconfigure.encoding.Config\ndictitems:\n" + values +
                                "  groups: !!python/object/new:dynamic_reconfigure.encoding.Config\n    dictitems:\n"
                                "      groups: {}\n      id: 0\n    state: []\nstate: []\n";

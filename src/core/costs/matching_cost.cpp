@@ -235,8 +235,8 @@ void loadDescriptors(const CostSource& source, int y, int width, int min, int le
     const std::int8_t* from =
         right + static_cast<std::ptrdiff_t>(std::clamp(width - 1 - min - t, 0, width - 1)) * channels;
     for (int c = 0; c < channels; ++c) {
-      scratch.right_descriptors[2 * (static_cast<std::size_t>(c / 2) * length + t) + c % 2] =
-          static_cast<std::int16_t>(from[c]);  // NOLINT(bugprone-signed-char-misuse): they are signed numbers
+      // NOLINTNEXTLINE(bugprone-signed-char-misuse): they are signed numbers
+      scratch.right_descriptors[2 * (static_cast<std::size_t>(c / 2) * length + t) + c % 2] = from[c];
     }
   }
 }

@@ -8,8 +8,6 @@
 #include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
-namespace {}  // namespace
-
 cv::Mat noneMask(const cv::Mat& map) {
   // Not map != map: OpenCV compares four values at once with an instruction for which NaN differs from nothing.
   return ~(map == map);

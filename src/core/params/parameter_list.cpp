@@ -122,7 +122,8 @@ void addMatchingCost(ParamList& list, MatchingCostParams& p) {
 
 void addSeeds(ParamList& list, SparseDisparityParams& sparse, DisparityPropagationParams& propagation) {
   list.stage("sparse_disparity");
-  list.add("features", sparse.features, "Make seeds of the feature matches.");
+  list.add("features", sparse.features,
+           "Spread the feature matches as seeds; without, they only vouch for the seeds of other sensors.");
   list.add("reject_outliers", sparse.reject_outliers, "Drop seeds that contradict their neighbours.");
   list.add("max_deviation_px", sparse.max_deviation_px, 0.0, 2.0, "px",
            "Matches are rejected if small windows around them find disparities that differ by more on the mean.");

@@ -58,8 +58,8 @@ bool belongsToTheNode(const std::string& name) {
   static const std::set<std::string> names = {
       "preset", "params",
       // read at the start
-      "approximate_sync", "approximate_sync_tolerance", "diagnostic_period", "image_transport", "nearest", "queue_size",
-      "seeds_fixed_frame", "watch_period",
+      "approximate_sync", "approximate_sync_tolerance", "diagnostic_period", "image_transport", "left_mask", "nearest",
+      "queue_size", "rectify", "right_mask", "seeds_fixed_frame", "watch_period",
       // live
       "max_age", "max_depth", "max_depth_error", "max_rate", "min_confidence", "min_depth", "nice", "seeds_depth_trust",
       "seeds_disparity_trust", "seeds_max_age", "seeds_points_trust", "seeds_spacing", "seeds_wait",

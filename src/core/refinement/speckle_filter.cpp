@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 #include <vector>
+
 #include "arguments.hpp"
 
 namespace fdp_stereo {
