@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,17 @@ TEST(RangeScan, ACameraWithoutAFocalLengthSeesNothing) {
   seen.camera.fx = 1e-310;
   const RangeScan scan = scanRanges(seen, scanFromCamera(), {});
   for (const float range : scan.ranges) EXPECT_TRUE(std::isnan(range));
+}
+
+TEST(RangeScan, PointsThatAreNoNumbersAreNoObstacles) {
+  Eigen::Isometry3d nowhere = scanFromCamera();
+  nowhere.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Isometry3d turned_by_nothing = scanFromCamera();
+  turned_by_nothing.linear().setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (const Eigen::Isometry3d& place : {nowhere, turned_by_nothing}) {
+    const RangeScan scan = scanRanges(room(3.0), place, {});
+    for (const float range : scan.ranges) EXPECT_TRUE(std::isnan(range)) << range;
+  }
 }
 
 TEST(RangeScan, ACameraThatLooksStraightDown) {

@@ -127,10 +127,11 @@ class Scanner {
 
   void addObstacle(const Eigen::Vector3d& point) {
     const double range = rangeOf(point);
-    if (point.z() < params_.min_height_m || point.z() > params_.max_height_m) return;
-    if (range < params_.min_range_m || range > params_.max_range_m) return;
+    // What is no number is within no limits.
+    if (!(point.z() >= params_.min_height_m && point.z() <= params_.max_height_m)) return;
+    if (!(range >= params_.min_range_m && range <= params_.max_range_m)) return;
     const double bin = binOf(point);
-    if (bin < 0.0 || bin >= static_cast<double>(obstacles_.size())) return;
+    if (!(bin >= 0.0 && bin < static_cast<double>(obstacles_.size()))) return;
     double& nearest = obstacles_[static_cast<std::size_t>(bin)];
     nearest = std::min(nearest, range);
   }
