@@ -12,6 +12,8 @@ namespace fdp_stereo {
 
 /// Longest side of an image or map that is read, px; a header that claims more is refused before anything is allocated.
 constexpr int kMaxImageSide = 32768;
+/// Most pixels of an image that is read, for the same reason.
+constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 /// Reads a disparity map, H x W, CV_32FC1 px, NaN = none: .pfm (one channel, either byte order; a value that is not
 /// finite = none) or .png (grey, 16 or 8 bit; value / png_scale, 0 = none). Throws std::runtime_error naming the file
@@ -36,8 +38,7 @@ cv::Mat toMask(const cv::Mat& picture);
 cv::Mat readMask(const std::string& path, cv::Size size);
 /// The same as readImage() from the bytes of such a file; `name` stands for it in errors. More than max_pixels are
 /// refused before anything is decoded.
-cv::Mat decodeImageFile(std::string_view bytes, const std::string& name,
-                        std::int64_t max_pixels = std::int64_t{kMaxImageSide} * kMaxImageSide);
+cv::Mat decodeImageFile(std::string_view bytes, const std::string& name, std::int64_t max_pixels = kMaxImagePixels);
 /// Whether the extension of `path` is one that writeImage() knows: PNG, JPEG, TIFF, BMP, WebP or PNM.
 bool isImageName(const std::string& path);
 /// Writes an image by the extension of `path`. Throws std::runtime_error naming the file.

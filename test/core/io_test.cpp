@@ -247,12 +247,26 @@ TEST(DecodeImageFile, RefusesSizesBeforeItDecodes) {
   expectContains(error("P5 60000 60000 255\n", 0, "P"), "claims 60000 x 60000 px");
   expectContains(error("P5 99999999999999999999 1 255\n", 0, "P"), "claims 1099511627776 x 1 px");
   expectContains(error("P6 # no size\n", 0, "P"), "claims 0 x 0 px");
+  expectContains(error("P6 3000 3000 255\n", 0, "P"), "bytes can hold");
+  expectContains(error(encoded(".bmp", image), 18, std::string("\xb8\x0b\0\0\xb8\x0b\0\0", 8)), "bytes can hold");
   const std::string webp = encoded(".webp", image);
   ASSERT_EQ(decodeImageFile(webp, "webp").size(), image.size());
   const std::string tiff = encoded(".tiff", image);
   const std::size_t width = tiff.find(std::string("\x00\x01\x03\x00\x01\x00\x00\x00\x32\x00", 10));
   ASSERT_NE(width, std::string::npos);
   expectContains(error(tiff, width + 8, "\x60\xea"), "claims 60000 x 40 px");
+  std::string large = tiff;
+  large.replace(width + 8, 2, "\xff\x7f").replace(width + 20, 2, "\xff\x7f");
+  expectContains(error(large, 0, ""), "claims 32767 x 32767 px, allowed are " + std::to_string(kMaxImagePixels));
+}
+
+/// A second frame before the end marker: libjpeg takes the first one's size.
+TEST(DecodeImageFile, TheLargestClaimOfAFileCounts) {
+  const std::string small = encoded(".jpg", noise(40, 50, CV_8UC3));
+  std::string large = small;
+  large.replace(large.find("\xff\xc0") + 5, 4, "\x75\x30\x75\x30");
+  large.resize(large.size() - 2);
+  expectContains(errorOf([&] { decodeImageFile(large + small, "/left"); }), "claims 30000 x 30000 px");
 }
 
 TEST(ReadImage, ReadsPipes) {

@@ -15,14 +15,23 @@ namespace {
 
 using Bytes = std::string_view;
 
-// Pixels that a byte can stand for at most, by the formats: 1032 bytes of 1-bit pixels by deflate; 8 x 8 by one bit.
+// Pixels that a byte can stand for at most, by the formats: 1032 bytes of 1-bit pixels by deflate; 8 x 8 by one bit; a
+// run of 255 by two bytes; 1-bit pixels.
 constexpr std::uint64_t kPngPixelsPerByte = 1032 * 8;
 constexpr std::uint64_t kJpegPixelsPerByte = 64 * 8;
+constexpr std::uint64_t kBmpPixelsPerByte = 128;
+constexpr std::uint64_t kPnmPixelsPerByte = 8;
 
 struct Claim {
   std::int64_t width = 0;
   std::int64_t height = 0;
   std::uint64_t pixels_per_byte = 0;  ///< 0 = unknown
+
+  /// Of several claims in one file decoders take the first or the last: the largest counts.
+  void widen(std::uint32_t w, std::uint32_t h) {
+    width = std::max<std::int64_t>(width, w);
+    height = std::max<std::int64_t>(height, h);
+  }
 };
 
 Claim pngClaim(Bytes bytes, const std::string& name) {
@@ -48,10 +57,7 @@ Claim jpegClaim(Bytes bytes, const std::string& name) {
     if (marker == 0xD9) return claim;
     if (marker == 0xFF) continue;
     if (marker == 0 || marker == 1 || (marker >= 0xD0 && marker <= 0xD8)) continue;  // nothing follows these
-    if (isFrameHeader(marker)) {
-      claim.height = bigEndian(bytes, at + 4, 2);
-      claim.width = bigEndian(bytes, at + 6, 2);
-    }
+    if (isFrameHeader(marker)) claim.widen(bigEndian(bytes, at + 6, 2), bigEndian(bytes, at + 4, 2));
     at += std::size_t{1} + std::max(2U, bigEndian(bytes, at + 1, 2));
   }
   fail(name, "truncated JPEG: it has no end marker");
@@ -66,16 +72,20 @@ Claim tiffClaim(Bytes bytes, const std::string&) {
     const std::size_t entry = directory + 2 + 12 * i;
     const std::uint32_t tag = number(bytes, entry, 2);
     const std::size_t value_bytes = number(bytes, entry + 2, 2) == 3 ? 2 : 4;  // type 3 = 16 bit
-    if (tag == 256) claim.width = number(bytes, entry + 8, value_bytes);
-    if (tag == 257) claim.height = number(bytes, entry + 8, value_bytes);
+    const std::uint32_t value = number(bytes, entry + 8, value_bytes);
+    if (tag == 256) claim.widen(value, 0);
+    if (tag == 257) claim.widen(0, value);
   }
   return claim;
 }
 
 Claim bmpClaim(Bytes bytes, const std::string&) {
-  if (littleEndian(bytes, 14, 4) == 12) return {littleEndian(bytes, 18, 2), littleEndian(bytes, 20, 2)};
+  if (littleEndian(bytes, 14, 4) == 12) {
+    return {littleEndian(bytes, 18, 2), littleEndian(bytes, 20, 2), kBmpPixelsPerByte};
+  }
   const auto height = static_cast<std::int32_t>(littleEndian(bytes, 22, 4));  // negative: rows from the top down
-  return {static_cast<std::int32_t>(littleEndian(bytes, 18, 4)), std::abs(static_cast<std::int64_t>(height))};
+  return {static_cast<std::int32_t>(littleEndian(bytes, 18, 4)), std::abs(static_cast<std::int64_t>(height)),
+          kBmpPixelsPerByte};
 }
 
 Claim webpClaim(Bytes bytes, const std::string&) {
@@ -100,7 +110,7 @@ Claim pnmClaim(Bytes bytes, const std::string&) {
       side = std::min<std::int64_t>(10 * side + (bytes[at] - '0'), 1LL << 40);
     }
   }
-  return {sides[0], sides[1]};
+  return {sides[0], sides[1], kPnmPixelsPerByte};
 }
 
 using ClaimOf = Claim (*)(Bytes bytes, const std::string& name);
