@@ -36,6 +36,7 @@ endif()
 
 # The same as a plain node.
 add_executable(disparity_node src/ros/disparity_node.cpp)
+target_include_directories(disparity_node PRIVATE include)
 target_include_directories(disparity_node SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 target_link_libraries(disparity_node PRIVATE ${catkin_LIBRARIES})
 set_target_properties(disparity_node PROPERTIES

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <sstream>
+
+#include "fdp_stereo/out_of_memory.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -21,9 +22,6 @@ int complain(const CLI::App& app, std::string message, int code) {
   std::cerr << app.get_name() << ": " << message << (code == kBadUsage ? " (see --help)" : "") << std::endl;
   return code;
 }
-
-constexpr char kOutOfMemory[] =
-    "out of memory; search fewer disparities, use smaller images (pipeline.scale), or give the program more";
 
 std::string rangeText(const ParamRef& ref) {
   if (const auto* choice = std::get_if<EnumRef>(&ref.value)) {
@@ -120,7 +118,9 @@ std::string describeParams() {
 std::string versionText(const std::string& tool) { return tool + " (fdp_stereo) " + FDP_STEREO_VERSION; }
 
 int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+  terminateWithMessage(app.get_name());
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  cv::setNumThreads(1);  // its pool waits for ever for a thread that could not be started, as where memory is short
   app.set_version_flag("--version", versionText(app.get_name()), "Print the version and exit");
   try {
     app.parse(argc, argv);
@@ -137,12 +137,8 @@ int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& ru
     return complain(app, error.what(), kBadUsage);
   } catch (const UsageError& error) {
     return complain(app, error.what(), kBadUsage);
-  } catch (const std::bad_alloc&) {
-    return complain(app, kOutOfMemory, kBadInput);
-  } catch (const cv::Exception& error) {
-    return complain(app, error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what(), kBadInput);
-  } catch (const std::exception& error) {
-    return complain(app, error.what(), kBadInput);
+  } catch (...) {
+    return complain(app, describeCurrentException(), kBadInput);
   }
 }
 

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <new>
 #include <stdexcept>
 
 #include <rosbag/bag.h>
@@ -21,6 +20,7 @@
 #include "command_line.hpp"
 #include "compressed_image.hpp"
 #include "fdp_stereo/io.hpp"
+#include "fdp_stereo/out_of_memory.hpp"
 #include "frame_processor.hpp"
 #include "output_bag.hpp"
 #include "rectifier.hpp"
@@ -159,10 +159,8 @@ class BagProcessor {
     std::string problem;
     try {
       return call();
-    } catch (const std::bad_alloc&) {
-      problem = "out of memory";
-    } catch (const std::exception& error) {
-      problem = error.what();
+    } catch (...) {
+      problem = describeCurrentException();
     }
     if (counts_.refused++ == 0) counts_.first_problem = problem;
   }

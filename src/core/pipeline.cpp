@@ -30,12 +30,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kSensorReachPx = 16;  ///< how far around a seed another sensor vouches for what the cameras do not see
 
-/// Uses a number of threads, OpenCV's among them, for as long as it lives. OpenCV has one number for the process.
+/// Uses a number of threads for as long as it lives, and no more of OpenCV's. OpenCV has one number for the process.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads) : before_(omp_get_max_threads()), opencv_before_(cv::getNumThreads()) {
     omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs());
-    useOpenCvThreads(std::min(omp_get_max_threads(), cv::getNumberOfCPUs()));  // it warns of more
+    useOpenCvThreads(std::min(omp_get_max_threads(), opencv_before_));
   }
   ~ThreadScope() {
     omp_set_num_threads(before_);

@@ -15,6 +15,7 @@
 #include "evaluation/pictures.hpp"
 #include "evaluation/progress.hpp"
 #include "evaluation/result_table.hpp"
+#include "fdp_stereo/out_of_memory.hpp"
 #include "process_memory.hpp"
 
 namespace fdp_stereo {
@@ -141,8 +142,8 @@ class Runner {
       try {
         if (!task.problem.empty()) throw std::runtime_error(task.problem);
         runScene(task.files, outcomes_[i]);
-      } catch (const std::exception& error) {
-        outcomes_[i].failures.push_back({task.files.name, error.what()});
+      } catch (...) {
+        outcomes_[i].failures.push_back({task.files.name, describeCurrentException()});
         progress_.step(task.files.name + " failed", static_cast<int>(methods_.size()));
       }
     }
@@ -156,8 +157,8 @@ class Runner {
       try {
         outcome.rows.push_back(runMethod(scene, methods_[m], settings_[m] + "-" + content));
         progress_.step(scene.name + " " + methods_[m].name);
-      } catch (const std::exception& error) {
-        outcome.failures.push_back({scene.name, methods_[m].name + ": " + error.what()});
+      } catch (...) {
+        outcome.failures.push_back({scene.name, methods_[m].name + ": " + describeCurrentException()});
         progress_.step(scene.name + " " + methods_[m].name + " failed");
       }
     }

@@ -4,32 +4,16 @@
 // The nodelet fdp_stereo/disparity as a plain node.
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
-#include <new>
 
 #include <nodelet/loader.h>
 #include <ros/ros.h>
+#include <opencv2/core/utility.hpp>
 
-namespace {
-
-/// What roscpp's own threads throw, when memory runs out, nobody can catch: an end with a message, not with a signal.
-[[noreturn]] void endWithMessage() {
-  try {
-    std::rethrow_exception(std::current_exception());
-  } catch (const std::bad_alloc&) {
-    std::fputs("disparity: out of memory; lower disparity_range or scale, or raise the limit (ulimit -v)\n", stderr);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "disparity: ended: %s\n", error.what());
-  } catch (...) {
-    std::fputs("disparity: ended by an unknown exception\n", stderr);
-  }
-  std::_Exit(EXIT_FAILURE);
-}
-
-}  // namespace
+#include "fdp_stereo/out_of_memory.hpp"
 
 int main(int argc, char** argv) {
-  std::set_terminate(endWithMessage);
+  fdp_stereo::terminateWithMessage("disparity");
+  cv::setNumThreads(1);  // its pool waits for ever for a thread that could not be started, as where memory is short
   ros::init(argc, argv, "disparity");
   nodelet::Loader loader(false);
   if (!loader.load(ros::this_node::getName(), "fdp_stereo/disparity", ros::names::getRemappings(), {})) {

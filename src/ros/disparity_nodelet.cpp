@@ -14,6 +14,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "fdp_stereo/out_of_memory.hpp"
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
 #include "node_reporter.hpp"
@@ -38,8 +39,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLongestTolerance = 60.0;  // s
 constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr double kWatchPeriod = 15.0;       // s
-constexpr char kOutOfMemory[] =
-    "out of memory; lower disparity_range or scale, and max_memory_mb to what this machine has";
 
 PairSynchronizerParams readSynchronizerParams(StartParams& start, const std::function<void(std::string)>& warn) {
   PairSynchronizerParams params;
@@ -299,12 +298,8 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
     if (cancel) return;
     outputs_.publish(output);
     reporter_.recordSuccess(frame, std::move(output.report), start, settings->revision);
-  } catch (const std::bad_alloc&) {
-    reporter_.recordFailure(kOutOfMemory);
-  } catch (const cv::Exception& error) {
-    reporter_.recordFailure(error.code == cv::Error::StsNoMem ? kOutOfMemory : error.what());
-  } catch (const std::exception& error) {
-    reporter_.recordFailure(error.what());
+  } catch (...) {
+    reporter_.recordFailure(describeCurrentException());
   }
 }
 

@@ -4,13 +4,15 @@
 """evaluate against a scoring of its own here, and what it does with broken, interrupted and divided runs."""
 import csv
 import os
+import resource
+import subprocess
 import tempfile
 import unittest
 
 import cv2
 import numpy as np
 
-from support import read_pfm, run, write_scene
+from support import BIN, read_pfm, run, write_scene
 
 BAD = {"bad_0.125": 0.125, "bad_0.25": 0.25, "bad_0.5": 0.5, "bad_1": 1.0, "bad_2": 2.0}
 
@@ -96,6 +98,26 @@ class EvaluateTest(unittest.TestCase):
         for method in ("sgbm_hh", "sgbm_3way", "bm"):
             self.assertLess(float(rows["one", method]["bad_2"]), 40.0)
             self.assertGreater(float(rows["one", method]["time_ms"]), 0.0)
+
+    def limited(self, limit_mb, *arguments):
+        return subprocess.run(
+            [os.path.join(BIN, "evaluate"), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, text=True, timeout=100,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20)))
+
+    def test_out_of_memory_is_a_line(self):
+        """An error, no signal and no endless wait, at any limit that the libraries start with."""
+        starts = (mb for mb in range(60, 2000, 4) if self.limited(mb, "--version").returncode == 0)
+        least = next(starts, None)
+        if least is None:
+            self.skipTest("a sanitizer needs all addresses")
+        for limit_mb in (least, *(least + more for more in (2, 4, 8, 12, 16, 20, 30, 40, 80))):
+            done = self.limited(limit_mb, *self.scenes, "--report", self.path("out_%d" % limit_mb))
+            with self.subTest(limit_mb=limit_mb):
+                self.assertGreaterEqual(done.returncode, 0, "ended by a signal: " + done.stderr)
+                if done.returncode != 0:
+                    self.assertNotEqual(done.stderr, "")
+                    self.assertNotIn("bad_alloc", done.stderr)
 
     def test_writes_the_pictures(self):
         self.evaluate(self.scenes[0], "--report", self.report)
