@@ -81,7 +81,8 @@ std::vector<Method> chooseMethods(const Options& options) {
     methods.push_back(variantMethod(variant, options.pipeline, options.seeds));
   }
   if (options.peers) {
-    for (Method& peer : peerMethods(options.pipeline.fill, options.pipeline.threads.value_or(0))) methods.push_back(std::move(peer));
+    for (Method& peer : peerMethods(options.pipeline.fill, options.pipeline.threads.value_or(0)))
+      methods.push_back(std::move(peer));
   }
   std::set<std::string> names;
   for (const Method& method : methods) {
