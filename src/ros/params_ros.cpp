@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "fdp_stereo/unknown_parameters.hpp"
+
 namespace fdp_stereo {
 namespace {
 
@@ -107,10 +109,7 @@ NodeSettings succeed(NodeSettings next, const NodeSettings& current) {
 /// One message for all names that are in no list.
 void reportUnknown(const std::vector<std::string>& names, const std::vector<ParamRef>& refs,
                    std::vector<std::string>& messages) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "'" : ", '") + name + "' (" + adviceFor(refs, name) + ")";
-  }
+  const std::string text = describeUnknown(refs, names);
   if (!text.empty()) messages.push_back("not known, so it has no effect: " + text);
 }
 

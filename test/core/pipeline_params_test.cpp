@@ -235,6 +235,15 @@ TEST(Yaml, ReportsMisspeltNamesOfTheNode) {
   }
 }
 
+TEST(Yaml, NamesAllUnknownParametersAtOnce) {
+  PipelineParams params;
+  const std::string message =
+      messageOf([&] { loadYaml(params, "disparity_range: 96\nP1: 200\nP2: 400\nprefilter_cap: 31\n", "sgbm.yaml"); });
+  expectContains(message, "sgbm.yaml:2: unknown parameters 'P1' (use semi_global_p1, in other units), 'P2' (use ");
+  expectContains(message, "'prefilter_cap' (not needed here); docs/migration.md");
+  expectContains(messageOf([&] { setParam(params, "P1", "200"); }), "use semi_global_p1");
+}
+
 TEST(Yaml, APresetInItComesFirst) {
   PipelineParams params;
   params.search.count = 33;

@@ -121,6 +121,25 @@ TEST(ApplyConfig, NamesWhatItDoesNotKnow) {
   }
 }
 
+TEST(ApplyRosparam, OneMessageForAYamlOfStereoImageProc) {
+  XmlRpc::XmlRpcValue values;
+  for (const char* name :
+       {"P1", "P2", "prefilter_size", "prefilter_cap", "correlation_window_size", "texture_threshold",
+        "stereo_algorithm", "fullDP", "downsampling_factor", "use_system_default_qos"}) {
+    values[name] = 1;
+  }
+  values["disparity_range"] = 96;
+  std::vector<std::string> messages;
+  EXPECT_EQ(applyRosparam(values, initial(), {}, messages).pipeline.search.count, 96);
+  ASSERT_EQ(messages.size(), 1U);
+  for (auto& [name, value] : values) {
+    if (name == "disparity_range") continue;
+    EXPECT_NE(messages[0].find("'" + name + "' ("), std::string::npos) << messages[0];
+  }
+  EXPECT_EQ(messages[0].find("did you mean"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("docs/migration.md"), std::string::npos) << messages[0];
+}
+
 TEST(ApplyConfig, APresetKeepsSearchMachineAndNode) {
   NodeSettings before = initial();
   before.pipeline.search = {-4, 48};

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "params/parameter_text.hpp"
 
+#include "fdp_stereo/unknown_parameters.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <locale>
@@ -105,7 +107,22 @@ constexpr Successor kSuccessors[] = {
     {"prefilter_size", "not needed here"},
     {"prefilter_cap", "not needed here"},
     {"texture_threshold", "not needed here"},
+    {"sgbm_mode", "not needed here"},
+    {"disp12_max_diff", "use disp12MaxDiff"},
+    {"downsampling_factor", "use pipeline_scale, 0.5 for 2"},
+    {"approximate_sync_tolerance_seconds", "use approximate_sync_tolerance"},
+    {"use_system_default_qos", "not needed here"},
+    {"use_color", "use color:=true of stereo.launch"},
+    {"avoid_point_cloud_padding", "not needed here"},
+    {"use_image_transport_camera_info", "not needed here"},
 };
+constexpr char kMigration[] = "; docs/migration.md goes through the parameters of stereo_image_proc";
+
+const Successor* findSuccessor(const std::string& old_name) {
+  const auto* found = std::find_if(std::begin(kSuccessors), std::end(kSuccessors),
+                                   [&](const Successor& successor) { return old_name == successor.old_name; });
+  return found == std::end(kSuccessors) ? nullptr : found;
+}
 
 std::string trim(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -143,10 +160,18 @@ const ParamRef* findParam(const std::vector<ParamRef>& refs, const std::string& 
 }
 
 std::string adviceFor(const std::vector<ParamRef>& refs, const std::string& unknown) {
-  for (const Successor& successor : kSuccessors) {
-    if (unknown == successor.old_name) return successor.advice;
-  }
+  if (const Successor* successor = findSuccessor(unknown)) return successor->advice;
   return "did you mean '" + nearestName(refs, unknown) + "'?";
+}
+
+std::string describeUnknown(const std::vector<ParamRef>& refs, const std::vector<std::string>& names) {
+  std::string text;
+  bool migrates = false;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "'" : ", '") + name + "' (" + adviceFor(refs, name) + ")";
+    migrates = migrates || findSuccessor(name) != nullptr;
+  }
+  return migrates ? text + kMigration : text;
 }
 
 const ParamRef& requireParam(const std::vector<ParamRef>& refs, const std::string& name) {

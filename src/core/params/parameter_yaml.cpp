@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "fdp_stereo/unknown_parameters.hpp"
 #include "params/parameter_text.hpp"
 #include "params/presets.hpp"
 
@@ -85,16 +86,32 @@ const Preset* findPreset(const std::string& name) {
   return found == presets.end() ? nullptr : &*found;
 }
 
+/// One error for all of them.
+void refuseUnknown(const std::vector<ParamRef>& refs, const std::vector<NamedText>& values, const std::string& file) {
+  std::vector<std::string> names;
+  int first_line = 0;
+  for (const NamedText& value : values) {
+    if (belongsToTheNode(value.name) || findParam(refs, value.name) != nullptr) continue;
+    if (names.empty()) first_line = value.line;
+    names.push_back(value.name);
+  }
+  if (!names.empty()) {
+    fail(file, first_line,
+         "unknown parameter" + std::string(names.size() > 1 ? "s " : " ") + describeUnknown(refs, names));
+  }
+}
+
 void loadValues(PipelineParams& params, const std::vector<NamedText>& values, const std::string& file) {
   for (const NamedText& value : values) {
     if (value.name == "preset" && isPreset(value.text)) usePreset(params, value.text);
   }
   const std::vector<ParamRef> refs = paramList(params);
+  refuseUnknown(refs, values, file);
   std::set<std::string> seen;
   for (const NamedText& value : values) {
     if (belongsToTheNode(value.name)) continue;
     try {
-      const ParamRef& ref = requireParam(refs, value.name);
+      const ParamRef& ref = *findParam(refs, value.name);
       if (!seen.insert(ref.key).second) throw std::invalid_argument(value.name + " is given twice");
       setFromString(ref, value.text);
     } catch (const std::invalid_argument& error) {
