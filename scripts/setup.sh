@@ -23,7 +23,7 @@ run_packages=(
 test_packages=(
   libgtest-dev libbenchmark-dev librostest-dev python3-rostest python3-tf2-ros
   clang clang-format clang-tidy universal-ctags libomp-dev libclang-rt-dev shellcheck catkin-lint catkin-tools
-  chromium chromium-driver doxygen graphviz liboctomap-dev
+  chromium chromium-driver doxygen graphviz liboctomap-dev parallel
 )
 
 # What some releases lack: without CLI11 there are no command-line tools.
