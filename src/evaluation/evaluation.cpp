@@ -32,7 +32,8 @@ bool scored(const cv::Mat& mask, int y, int x) { return mask.empty() || mask.at<
 struct Tally {
   std::int64_t pixels = 0;
   std::int64_t answers = 0;
-  std::array<std::int64_t, 5> above{};  // among the answers
+  std::array<std::int64_t, kBadThresholdsPx.size()> above{};  // among the answers
+  std::int64_t outliers = 0;                                  // of D1, likewise
   double error_px = 0.0;
 
   void add(float disparity, float truth) {
@@ -41,6 +42,7 @@ struct Tally {
     ++answers;
     const float error = std::abs(disparity - truth);
     for (std::size_t i = 0; i < above.size(); ++i) above[i] += error > static_cast<float>(kBadThresholdsPx[i]) ? 1 : 0;
+    outliers += error > static_cast<float>(kBadThresholdsPx.back()) && error > kOutlierShare * truth ? 1 : 0;
     error_px += std::min(static_cast<double>(error), kMaxErrorPx);
   }
 };
@@ -71,6 +73,7 @@ DisparityErrors evaluateDisparity(const cv::Mat& disparity, const cv::Mat& truth
   DisparityErrors errors;
   const std::int64_t unanswered = tally.pixels - tally.answers;
   for (std::size_t i = 0; i < errors.bad.size(); ++i) errors.bad[i] = share(tally.above[i] + unanswered, tally.pixels);
+  errors.d1 = share(tally.outliers + unanswered, tally.pixels);
   errors.density = share(tally.answers, tally.pixels);
   if (tally.answers > 0) {
     errors.sparse_bad_half = share(tally.above[2], tally.answers);
@@ -92,6 +95,7 @@ DisparityErrors averageErrors(const std::vector<DisparityErrors>& errors, const 
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double weight = weights[i] / total;
     for (std::size_t t = 0; t < mean.bad.size(); ++t) mean.bad[t] += weight * errors[i].bad[t];
+    mean.d1 += weight * errors[i].d1;
     mean.density += weight * errors[i].density;
     mean.sparse_bad_half += weight * errors[i].sparse_bad_half;
     mean.average_px += weight * errors[i].average_px;

@@ -11,12 +11,14 @@
 
 namespace fdp_stereo {
 
-constexpr std::array<double, 5> kBadThresholdsPx = {0.125, 0.25, 0.5, 1.0, 2.0};
-constexpr double kMaxErrorPx = 100.0;  ///< an error counts at most this much in the average
+constexpr std::array<double, 6> kBadThresholdsPx = {0.125, 0.25, 0.5, 1.0, 2.0, 3.0};
+constexpr double kOutlierShare = 0.05;  ///< of the true disparity, for D1
+constexpr double kMaxErrorPx = 100.0;   ///< an error counts at most this much in the average
 
 /// Errors over the scored pixels that have a truth; a pixel without answer counts as bad. Shares in %.
 struct DisparityErrors {
-  std::array<double, 5> bad{};     ///< share with an error above each of kBadThresholdsPx
+  std::array<double, 6> bad{};     ///< share with an error above each of kBadThresholdsPx
+  double d1 = 0.0;                 ///< KITTI 2015: share with an error above 3 px and kOutlierShare of the truth
   double density = 0.0;            ///< share with an answer
   double sparse_bad_half = 100.0;  ///< bad 0.5 among the answered
   double average_px = 100.0;       ///< mean error of the answered, each capped at kMaxErrorPx

@@ -127,6 +127,8 @@ const std::vector<Column>& resultColumns() {
       badColumn<2>("bad_0.5", "bad .5"),
       badColumn<3>("bad_1", "bad 1"),
       badColumn<4>("bad_2", "bad 2"),
+      badColumn<5>("bad_3", "bad 3"),
+      FDP_STEREO_COLUMN("d1", "D1", Better::kSmaller, errors.d1),
       FDP_STEREO_COLUMN("density", "density", Better::kLarger, errors.density),
       FDP_STEREO_COLUMN("sparse_bad_0.5", "sparse .5", Better::kSmaller, errors.sparse_bad_half),
       FDP_STEREO_COLUMN("average_px", "avg px", Better::kSmaller, errors.average_px),

@@ -25,6 +25,8 @@ TEST(Evaluation, HandWorkedCase) {
   EXPECT_DOUBLE_EQ(errors.bad[1], 100.0 * 5 / 7);
   EXPECT_DOUBLE_EQ(errors.bad[2], 100.0 * 4 / 7);
   EXPECT_DOUBLE_EQ(errors.bad[4], 100.0 * 4 / 7);
+  EXPECT_DOUBLE_EQ(errors.bad[5], 100.0 * 3 / 7);
+  EXPECT_DOUBLE_EQ(errors.d1, 100.0 * 3 / 7);
   EXPECT_DOUBLE_EQ(errors.density, 100.0 * 5 / 7);
   EXPECT_DOUBLE_EQ(errors.sparse_bad_half, 100.0 * 2 / 5);
   EXPECT_NEAR(errors.average_px, (0.0 + 0.2 + 0.5 + 3.0 + 100.0) / 5, 1e-6);
@@ -48,11 +50,20 @@ TEST(Evaluation, EqualsThePlainReference) {
       const DisparityErrors fast = evaluateDisparity(disparity, truth, region);
       const DisparityErrors slow = reference::evaluateDisparity(disparity, truth, region);
       for (std::size_t t = 0; t < fast.bad.size(); ++t) EXPECT_NEAR(fast.bad[t], slow.bad[t], 1e-9);
+      EXPECT_NEAR(fast.d1, slow.d1, 1e-9);
       EXPECT_NEAR(fast.density, slow.density, 1e-9);
       EXPECT_NEAR(fast.sparse_bad_half, slow.sparse_bad_half, 1e-9);
       EXPECT_NEAR(fast.average_px, slow.average_px, 1e-9);
     }
   }
+}
+
+TEST(Evaluation, D1ForgivesFivePercentOfLargeDisparities) {
+  const cv::Mat truth = (cv::Mat_<float>(1, 4) << 100.0F, 100.0F, 10.0F, 10.0F);
+  const DisparityErrors errors =
+      evaluateDisparity((cv::Mat_<float>(1, 4) << 104.0F, 106.0F, 14.0F, 12.0F), truth, cv::Mat());
+  EXPECT_DOUBLE_EQ(errors.bad[5], 75.0);
+  EXPECT_DOUBLE_EQ(errors.d1, 50.0);
 }
 
 TEST(Evaluation, InfinityIsNoAnswerAndNoTruth) {

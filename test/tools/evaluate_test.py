@@ -14,7 +14,7 @@ import numpy as np
 
 from support import BIN, read_pfm, run, write_scene
 
-BAD = {"bad_0.125": 0.125, "bad_0.25": 0.25, "bad_0.5": 0.5, "bad_1": 1.0, "bad_2": 2.0}
+BAD = {"bad_0.125": 0.125, "bad_0.25": 0.25, "bad_0.5": 0.5, "bad_1": 1.0, "bad_2": 2.0, "bad_3": 3.0}
 
 
 def score(disparity, truth, region):
@@ -23,6 +23,7 @@ def score(disparity, truth, region):
     answered = np.isfinite(disparity) & (disparity >= 0)
     error = np.where(answered, np.abs(np.where(answered, disparity, 0) - np.where(use, truth, 0)), np.inf)[use]
     figures = {name: 100.0 * np.mean(error > limit) for name, limit in BAD.items()}
+    figures["d1"] = 100.0 * np.mean((error > 3.0) & (error > 0.05 * truth[use]))
     known = error[np.isfinite(error)]
     figures["density"] = 100.0 * len(known) / len(error)
     figures["sparse_bad_0.5"] = 100.0 * np.mean(known > 0.5)
