@@ -79,7 +79,7 @@ Contestant makePreset(const std::string& name, const Scene& scene, int threads) 
 }  // namespace
 
 const std::vector<std::string>& contestantNames() {
-  static const std::vector<std::string> names = {"fast", "accurate", "paper", "sgbm_hh", "sgbm_3way", "bm"};
+  static const std::vector<std::string> names = {"fast", "light", "accurate", "paper", "sgbm_hh", "sgbm_3way", "bm"};
   return names;
 }
 

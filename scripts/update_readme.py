@@ -1,34 +1,120 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes README's picture from the sample and its results table from scenes beside the repository.
+"""Writes the figures of README and docs/performance.md anew from docs/measured.json, which scripts/measure.py made.
 
-    scripts/update_readme.py [--data FOLDER] [--presets fast paper accurate]
+    scripts/update_readme.py [--check | --picture]
 
-Needs a build (scripts/build.sh). The table names the commit and the processor that it was measured with.
+--check changes nothing and fails where a figure differs; --picture makes README's picture from the sample, too (needs a build).
 """
 import argparse
-import csv
+import json
 import os
 import re
 import subprocess
+import sys
 import tempfile
-
-import cv2
-import numpy as np
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BIN = os.path.join(ROOT, "build", "devel", "lib", "fdp_stereo")
-SETS = (("MiddEval3-trainingQ", "Middlebury V3, 8 scenes at quarter size"),
-        ("Middlebury-v2", "Middlebury 2001/2003, 4 scenes"),
-        ("KITTI2012", "KITTI 2012, 8 scenes"))
-NAMES = {"sgbm_hh": "OpenCV StereoSGBM, MODE_HH", "sgbm_3way": "OpenCV StereoSGBM, MODE_SGBM_3WAY", "bm": "OpenCV StereoBM"}
-COLUMNS = (("bad_0.125", "bad .125"), ("bad_0.5", "bad .5"), ("bad_1", "bad 1"), ("bad_2", "bad 2"),
-           ("average_px", "avg px"), ("time_ms", "ms"), ("cpu_ms", "CPU ms"), ("memory_mb", "MB"))
-HALF = {"PianoL", "Playroom", "Playtable", "Shelves", "Vintage"}
+SETS = (("MiddEval3-trainingQ", "Middlebury V3 at quarter size"), ("Middlebury-v2", "Middlebury 2001/2003"),
+        ("KITTI2012", "KITTI 2012"))
+NAMES = {"fast": "`fast`", "light": "`light`", "accurate": "`accurate`, offline", "sgbm_hh": "StereoSGBM, MODE_HH",
+         "sgbm_3way": "StereoSGBM, MODE_SGBM_3WAY", "bm": "StereoBM"}
+COLUMNS = (("bad_0.5", "bad .5"), ("bad_1", "bad 1"), ("bad_2", "bad 2"), ("bad_3", "bad 3"), ("d1", "D1"),
+           ("average_px", "avg px"), ("answered", "answered %"), ("wrong", "wrong of answered %"), ("memory_mb", "MB"))
+BLOCK = "<!-- %s -->.*?<!-- /%s -->"
+
+
+def summary(measured):
+    """README's sentence."""
+    scenes = measured["accuracy"]["MiddEval3-trainingQ"]
+    speed = measured["speed"]["cpu_ms"]["640 x 480 x 64"]
+    bad = {method: "%.1f %%" % scenes[method]["bad_1"] for method in ("fast", "sgbm_hh", "sgbm_3way", "bm")}
+    return [("**%s of the pixels are wrong by more than 1 px** with the preset `fast`, %s with OpenCV's StereoSGBM (%s in its fast "
+             "mode) and %s with StereoBM: Middlebury V3, %d scenes, holes filled. It takes %.1f times the CPU time of StereoSGBM's fast "
+             "mode; the preset `light` takes %.1f times.")
+            % (bad["fast"], bad["sgbm_hh"], bad["sgbm_3way"], bad["bm"], scenes["fast"]["scenes"],
+               speed["fast"] / speed["sgbm_3way"], speed["light"] / speed["sgbm_3way"])]
+
+
+def accuracy_table(entries, heading):
+    columns = [(name, text) for name, text in COLUMNS if any(name in entry for entry in entries.values())]
+    best = {name: (max if name == "answered" else min)(entry[name] for entry in entries.values() if name in entry)
+            for name, _ in columns}
+    lines = ["| %s, %d scenes | %s | commit |" % (heading, next(iter(entries.values()))["scenes"],
+                                                  " | ".join(text for _, text in columns)),
+             "|---" * (len(columns) + 2) + "|"]
+    for method in sorted(entries, key=list(NAMES).index):
+        cells = []
+        for name, _ in columns:
+            value = entries[method].get(name)
+            text = "-" if value is None else "%.0f" % value if name == "memory_mb" else "%.2f" % value
+            cells.append("**%s**" % text if value == best[name] else text)
+        lines.append("| %s | %s | %s |" % (NAMES[method], " | ".join(cells), entries[method]["commit"]))
+    return lines + [""]
+
+
+def accuracy(measured):
+    lines = []
+    for folder, heading in SETS:
+        if folder in measured["accuracy"]:
+            lines += accuracy_table(measured["accuracy"][folder], heading)
+    return lines[:-1]
+
+
+def speed(measured):
+    table = measured["speed"]
+    methods = ("bm", "sgbm_3way", "light", "fast")
+    lines = ["| CPU ms per frame (Hz of one core) | %s |" % " | ".join(NAMES[method] for method in methods), "|---" * 5 + "|"]
+    for size, times in table["cpu_ms"].items():
+        cells = ["%.0f (%.1f)" % (times[method], 1e3 / times[method]) for method in methods]
+        lines.append("| %s | %s |" % (size, " | ".join(cells)))
+    for folder, heading in SETS:
+        entries = measured["accuracy"].get(folder, {})
+        for name, text in (("answered", "answered %"), ("wrong", "wrong of answered %"), ("bad_1", "bad 1, filled")):
+            if entries:
+                lines.append("| %s: %s | %s |" % (heading, text, " | ".join("%.1f" % entries[method][name] for method in methods)))
+    note = "Times: %s, one thread, median of %d, commit %s." % (table["machine"], table["runs"], table["commit"])
+    if table["load"] > table["cores"]:
+        note += " The machine did other work meanwhile (load %.0f on %d cores): compare the columns, not the milliseconds." % (
+            table["load"], table["cores"])
+    return lines + ["", note]
+
+
+PAGES = {"README.md": {"summary": summary}, "docs/performance.md": {"accuracy": accuracy, "speed": speed}}
+
+
+def rendered(page, measured):
+    with open(os.path.join(ROOT, page)) as file:
+        text = file.read()
+    for name, make in PAGES[page].items():
+        block = "\n".join(["<!-- %s -->" % name, *make(measured), "<!-- /%s -->" % name])
+        text, count = re.subn(BLOCK % (name, name), lambda _, block=block: block, text, flags=re.S)
+        if count != 1:
+            sys.exit("update_readme.py: %s needs one block <!-- %s -->" % (page, name))
+    return text
+
+
+def update(measured, check):
+    """The pages that differ."""
+    differing = []
+    for page in PAGES:
+        path = os.path.join(ROOT, page)
+        text = rendered(page, measured)
+        with open(path) as file:
+            if file.read() == text:
+                continue
+        differing.append(page)
+        if not check:
+            with open(path, "w") as file:
+                file.write(text)
+    return differing
 
 
 def make_picture():
+    import cv2
+    import numpy as np
     sample = os.path.join(ROOT, "sample", "motorcycle")
     with tempfile.TemporaryDirectory() as folder:
         color = os.path.join(folder, "color.png")
@@ -39,77 +125,18 @@ def make_picture():
     cv2.imwrite(picture, cv2.resize(beside, None, fx=0.6, fy=0.6, interpolation=cv2.INTER_AREA))
 
 
-def averages(table):
-    """Weighted mean of every column per method, in the order of the table."""
-    with open(table, newline="") as file:
-        rows = list(csv.DictReader(file))
-    means = {}
-    for method in dict.fromkeys(row["method"] for row in rows):
-        own = [row for row in rows if row["method"] == method]
-        weights = [0.5 if row["scene"] in HALF else 1.0 for row in own]
-        means[method] = {name: np.average([float(row[name] or "nan") for row in own], weights=weights)
-                         for name, _ in COLUMNS}
-    return means
-
-
-def table_of(command, heading):
-    with tempfile.TemporaryDirectory() as folder:
-        table = os.path.join(folder, "table.csv")
-        subprocess.run(command + ["--csv", table], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        means = averages(table)
-    best = {name: min(mean[name] for mean in means.values()) for name, _ in COLUMNS}
-    lines = ["", "| %s | %s |" % (heading, " | ".join(text for _, text in COLUMNS)), "|---" * (len(COLUMNS) + 1) + "|"]
-    for method, mean in means.items():
-        cells = []
-        for name, _ in COLUMNS:
-            text = "%.0f" % mean[name] if name in ("time_ms", "cpu_ms", "memory_mb") else "%.2f" % mean[name]
-            cells.append("**%s**" % text if mean[name] == best[name] else text)
-        lines.append("| %s | %s |" % (NAMES.get(method, "`%s`" % method), " | ".join(cells)))
-    return lines
-
-
-def machine():
-    with open("/proc/cpuinfo") as file:
-        model = next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown processor")
-    return "%s, %d threads" % (model, os.cpu_count())
-
-
-def commit():
-    """The commit that is checked out, and whether the programs were changed since."""
-    git = ["git", "-C", ROOT]
-    name = subprocess.run(git + ["rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
-    changed = subprocess.run(git + ["diff", "--quiet", "HEAD", "--", "include", "src", "tools", "config"]).returncode != 0
-    return name + (" with local changes" if changed else "")
-
-
-def make_results(data, presets):
-    lines = ['Columns "bad t": share in % of the pixels whose disparity is off by more than t px, among the pixels that both cameras see;',
-             "holes are filled, means are weighted as in the Middlebury V3 table. ms, CPU ms: wall and CPU time of one run per",
-             "pair (docs/performance.md has medians); MB: memory of the run. Bold: the best of a column. Measured at commit %s on %s."
-             % (commit(), machine())]
-    for folder, heading in SETS:
-        if not os.path.isdir(os.path.join(data, folder)):
-            continue
-        words = [os.path.join("build", "devel", "lib", "fdp_stereo", "evaluate"), os.path.join(data, folder), "--fill", "--peers"]
-        for preset in presets:
-            words += ["--preset", preset]
-        lines += table_of(words, heading)
-        lines += ["", "<!-- skip: needs the scenes -->", "```bash", " ".join(words), "```"]
-    return lines
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", default="../shared/data", help="folder of the scene folders (default: %(default)s)")
-    parser.add_argument("--presets", nargs="+", default=["fast", "accurate", "paper"])
-    arguments = parser.parse_args()
-    os.chdir(ROOT)
-    make_picture()
-    results = "\n".join(["<!-- results -->"] + make_results(arguments.data, arguments.presets) + ["<!-- /results -->"])
-    with open("README.md") as file:
-        text = file.read()
-    with open("README.md", "w") as file:
-        file.write(re.sub("<!-- results -->.*<!-- /results -->", lambda _: results, text, flags=re.S))
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--picture", action="store_true")
+    options = parser.parse_args()
+    if options.picture:
+        make_picture()
+    with open(os.path.join(ROOT, "docs", "measured.json")) as file:
+        differing = update(json.load(file), options.check)
+    if options.check and differing:
+        sys.exit("update_readme.py: %s: figures differ from docs/measured.json; measure again (scripts/measure.py) instead of "
+                 "editing them" % ", ".join(differing))
 
 
 if __name__ == "__main__":
