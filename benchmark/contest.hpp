@@ -27,7 +27,8 @@ struct Score {
   cv::Mat disparity;
 };
 
-/// Names that makeContestant() takes: presets "fast", "light", "accurate", "paper", and OpenCV's "sgbm_hh", "sgbm_3way", "bm".
+/// Names that makeContestant() takes: presets "fast", "light", "accurate", "paper", and OpenCV's "sgbm_hh",
+/// "sgbm_3way", "bm".
 const std::vector<std::string>& contestantNames();
 
 /// A preset with holes filled and the range of the scene, or a matcher of OpenCV. Throws std::invalid_argument for
