@@ -25,15 +25,17 @@ MEASURED = os.path.join(ROOT, "docs", "measured.json")
 EVALUATE = os.path.join(ROOT, "build", "devel", "lib", "fdp_stereo", "evaluate")
 SETS = ("MiddEval3-trainingQ", "Middlebury-v2", "KITTI2012")
 PEERS = ("sgbm_hh", "sgbm_3way", "bm")
+PROGRAMS = ("include", "src", "tools", "config")
 SIZES = ((640, 480, 64), (640, 480, 96), (1280, 720, 128), (1226, 370, 128))
 HALF = {"PianoL", "Playroom", "Playtable", "Shelves", "Vintage"}  # weights of the Middlebury V3 table
 
 
 def commit():
-    """The commit that is checked out, and whether the programs were changed since."""
+    """The last commit that changed the programs, and whether they were changed since."""
     git = ["git", "-C", ROOT]
-    name = subprocess.run(git + ["rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
-    changed = subprocess.run(git + ["diff", "--quiet", "HEAD", "--", "include", "src", "tools", "config"]).returncode != 0
+    name = subprocess.run(git + ["log", "-1", "--format=%h", "--", *PROGRAMS], check=True, stdout=subprocess.PIPE,
+                          text=True).stdout.strip()
+    changed = subprocess.run(git + ["diff", "--quiet", "HEAD", "--", *PROGRAMS]).returncode != 0
     return name + (" with local changes" if changed else "")
 
 

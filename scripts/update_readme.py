@@ -9,6 +9,7 @@
 """
 import argparse
 import json
+import math
 import os
 import re
 import subprocess
@@ -67,7 +68,8 @@ def speed(measured):
     table = measured["speed"]
     methods = ("bm", "sgbm_3way", "light", "fast")
     lines = ["| CPU ms per frame (Hz of one core) | %s |" % " | ".join(NAMES[method] for method in methods), "|---" * 5 + "|"]
-    for size, times in table["cpu_ms"].items():
+    for size in sorted(table["cpu_ms"], key=lambda size: math.prod(map(int, size.split(" x ")))):
+        times = table["cpu_ms"][size]
         cells = ["%.0f (%.1f)" % (times[method], 1e3 / times[method]) for method in methods]
         lines.append("| %s | %s |" % (size, " | ".join(cells)))
     for folder, heading in SETS:
