@@ -19,6 +19,7 @@ import tempfile
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BIN = os.path.join(ROOT, "build", "devel", "lib", "fdp_stereo")
 SETS = (("MiddEval3-trainingQ", "Middlebury V3 at quarter size"), ("Middlebury-v2", "Middlebury 2001/2003"),
+        ("Middlebury-2005-2006", "Middlebury 2005/2006"),
         ("KITTI2012", "KITTI 2012"))
 NAMES = {"fast": "`fast`", "light": "`light`", "accurate": "`accurate`, offline", "sgbm_hh": "StereoSGBM, MODE_HH",
          "sgbm_3way": "StereoSGBM, MODE_SGBM_3WAY", "bm": "StereoBM"}
@@ -84,7 +85,16 @@ def speed(measured):
     return lines + ["", note]
 
 
-PAGES = {"README.md": {"summary": summary}, "docs/performance.md": {"accuracy": accuracy, "speed": speed}}
+def metres(measured):
+    methods = ("bm", "sgbm_3way", "light", "fast")
+    lines = ["| RMS error of the depth (answered) at | %s |" % " | ".join(NAMES[method] for method in methods), "|---" * 5 + "|"]
+    for distance, entry in sorted(measured["metres"]["rms_m"].items(), key=lambda item: float(item[0])):
+        cells = ["%.3f m (%.0f %%)" % (entry[method], entry[method + "_answered"]) for method in methods]
+        lines.append("| %s m | %s |" % (distance, " | ".join(cells)))
+    return lines
+
+
+PAGES = {"README.md": {"summary": summary}, "docs/performance.md": {"accuracy": accuracy, "speed": speed, "metres": metres}}
 
 
 def rendered(page, measured):

@@ -38,7 +38,7 @@ CASES = (
     ("smoothness", "Streaks in places with weak texture",
      "The penalties for changes of the disparity are too small for the matching cost. Raise `semi_global.p1` and "
      "`semi_global.p2`, p2 to about five times p1.",
-     WHOLE, {"semi_global.p1": "0.05", "semi_global.p2": "0.2"}, {"semi_global.p1": "0.6", "semi_global.p2": "3"}),
+     WHOLE, {"semi_global.p1": "0.05", "semi_global.p2": "0.2"}, {"semi_global.p1": "0.6", "semi_global.p2": "2.7"}),
     ("left_right", "Wrong disparities to the left of near things",
      "Only the left camera sees that part of the background. Switch `left_right_check.enabled` on, which removes such pixels; "
      "a smaller `left_right_check.max_difference_px` is stricter.",
