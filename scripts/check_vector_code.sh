@@ -10,7 +10,8 @@ set -euo pipefail
 # Instructions per function. Those below 40 call or jump to others; a table or the size of a buffer needs no vectors.
 "${OBJDUMP:-objdump}" -dC --no-show-raw-insn "$@" | awk '
   BEGIN {
-    needs["combineU8"] = "umull"; needs["hamming"] = "cnt"; needs["absoluteDifferences"] = "umin"
+    needs["thetaCosts"] = "umull"; needs["addCensusCosts"] = "tbl"; needs["hamming"] = "cnt"
+    needs["absoluteDifferences"] = "umin"; needs["convolve"] = "smull"; needs["sumAlongColumns"] = "fabd"
     needs["followOf"] = "umin"; needs["relaxRow"] = "fcmgt"; needs["addNeighbour"] = "fmul"
   }
   function check(  key) {

@@ -8,10 +8,7 @@ namespace {
 
 constexpr float kNone = __builtin_nanf("");
 
-inline bool alike(float a, float b, float max_difference) {
-  const float difference = a - b;
-  return (difference < 0.0F ? -difference : difference) <= max_difference;
-}
+inline bool alike(float a, float b, float max_difference) { return __builtin_fabsf(a - b) <= max_difference; }
 
 /// In blocks: what is gathered one by one stands between loops that compute many at a time.
 void keepAgreeing(const float* __restrict left, const float* __restrict right, int width, float max_difference,
@@ -65,7 +62,9 @@ void sumAlongColumns(const float* __restrict own, const float* const* rows, cons
   for (int x = 0; x < width; ++x) {
     std::int32_t sum = 0;
 #pragma GCC unroll 7
-    for (int k = 0; k < kVoteSide; ++k) sum += alike(own[x], row[k][x], max_difference) ? count[k][x] : 0;
+    for (int k = 0; k < kVoteSide; ++k) {
+      sum += static_cast<std::int32_t>(alike(own[x], row[k][x], max_difference)) * count[k][x];
+    }
     sums[x] = sum;
   }
 }
