@@ -14,6 +14,7 @@ add_library(fdp_stereo_nodelet
   src/ros/seed_sources.cpp
   src/ros/mask_sources.cpp
   src/ros/rectifier.cpp
+  src/ros/deadline_controller.cpp
   src/ros/frame_processor.cpp
   src/ros/output_topics.cpp
   src/ros/node_status.cpp

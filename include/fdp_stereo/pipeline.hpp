@@ -58,6 +58,8 @@ class Pipeline {
 
   /// Takes effect with the next run; keeps buffers and what was learnt from earlier frames where that still fits.
   void setParams(const PipelineParams& params);
+  /// Another params().scale alone, which the memory of the stream outlives.
+  void setScale(double scale);
   const PipelineParams& params() const { return params_; }
   /// Called after every step of an optimiser that takes long, from the thread of run(); empty = nobody is told.
   void setProgress(OptimizerProgress progress) { progress_ = std::move(progress); }

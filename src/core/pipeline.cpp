@@ -200,6 +200,15 @@ void Pipeline::setParams(const PipelineParams& params) {
   state_->average.reset("new parameters");
 }
 
+void Pipeline::setScale(double scale) {
+  PipelineParams params = params_;
+  params.scale = scale;
+  validate(params);
+  params_ = params;
+  state_->last = {};  // at the other scale
+  state_->last_counts = false;
+}
+
 void Pipeline::setStream(bool stream) {
   if (stream != stream_) state_->average.reset("a stream begins");
   stream_ = stream;

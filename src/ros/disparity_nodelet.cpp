@@ -14,6 +14,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "deadline_controller.hpp"
 #include "fdp_stereo/out_of_memory.hpp"
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
@@ -102,6 +103,8 @@ class DisparityNodelet : public nodelet::Nodelet {
   void searchFromNearest(const StereoFrame& frame);
   void work(const StereoFrame& frame, const std::atomic<bool>& cancel);
   bool tooOld(const StereoFrame& frame, const NodeSettings& settings);
+  NodeSettings withinDeadline(const NodeSettings& settings);
+  void recordTime(const NodeSettings& settings, Clock::time_point start, FrameReport& report);
   void warn(const std::string& text) { reporter_.warn(text); }
   void complete(NodeStatus& status);
   StereoTopics topics() const { return {input_names_[0], input_names_[2], input_names_[1], input_names_[3]}; }
@@ -112,7 +115,9 @@ class DisparityNodelet : public nodelet::Nodelet {
   std::unique_ptr<SeedSources> seeds_;
   std::unique_ptr<MaskSources> masks_;
   std::unique_ptr<FrameProcessor> processor_;
-  double nearest_m_ = 0.0;           ///< that the range shall be made for with the next pair; 0 = as it is
+  double nearest_m_ = 0.0;       ///< that the range shall be made for with the next pair; 0 = as it is
+  DeadlineController deadline_;  ///< of the worker's thread, with the revision of the parameters it knows
+  unsigned deadline_revision_ = 0;
   std::atomic<bool> forget_{false};  ///< tells the worker that the stamps jumped back
 
   std::unique_ptr<image_transport::ImageTransport> transport_;
@@ -294,9 +299,10 @@ void DisparityNodelet::work(const StereoFrame& frame, const std::atomic<bool>& c
       warn("nice cannot be lowered without privileges; restart the node");
     }
     if (forget_.exchange(false)) processor_->reset();
-    FrameOutput output = processor_->process(frame, *settings, outputs_.wanted(), &cancel);
+    FrameOutput output = processor_->process(frame, withinDeadline(*settings), outputs_.wanted(), &cancel);
     if (cancel) return;
     outputs_.publish(output);
+    recordTime(*settings, start, output.report);
     reporter_.recordSuccess(frame, std::move(output.report), start, settings->revision);
   } catch (...) {
     reporter_.recordFailure(describeCurrentException());
@@ -321,6 +327,36 @@ bool DisparityNodelet::tooOld(const StereoFrame& frame, const NodeSettings& sett
   if (max_age <= 0.0 || secondsBetween(frame.left->header.stamp, ros::Time::now()) <= max_age) return false;
   reporter_.update([](NodeStatus& status) { ++status.too_old; });
   return true;
+}
+
+/// With the scale that the deadline leaves.
+NodeSettings DisparityNodelet::withinDeadline(const NodeSettings& settings) {
+  NodeSettings within = settings;
+  if (settings.node.deadline_ms <= 0.0) {
+    deadline_ = {};
+  } else if (settings.revision != deadline_revision_) {
+    deadline_.forget();
+  }
+  deadline_revision_ = settings.revision;
+  within.pipeline.scale = deadline_.scale(settings.pipeline.scale);
+  return within;
+}
+
+/// Says in the report what was given up for the deadline.
+void DisparityNodelet::recordTime(const NodeSettings& settings, Clock::time_point start, FrameReport& report) {
+  const double deadline_ms = settings.node.deadline_ms;
+  if (deadline_ms <= 0.0 || report.pipeline.times.empty()) return;
+  const double wanted = settings.pipeline.scale;
+  const double used = deadline_.scale(wanted);
+  if (report.pipeline.temporal.repeated) {
+    deadline_.recordRepeated();
+  } else {
+    deadline_.record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), deadline_ms, wanted);
+  }
+  if (used >= wanted) return;
+  report.warnings.push_back(text("deadline_ms = ", deadline_ms, ": images are matched at ", used,
+                                 " of their size, not ", wanted,
+                                 deadline_.beyondReach() ? "; pairs are late all the same" : ""));
 }
 
 /// What the status needs from the parts.

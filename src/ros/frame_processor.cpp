@@ -126,6 +126,7 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
   if (cancel != nullptr && *cancel) return output;
   fillMaps(frame, settings, geometry, wanted, result, output);
   fillReport(result, report);
+  report.scale = settings.pipeline.scale;
   return output;
 }
 
@@ -231,6 +232,8 @@ Pipeline& FrameProcessor::pipelineFor(const NodeSettings& settings) {
     pipeline_->setStream(true);
   } else if (revision_ != settings.revision) {
     pipeline_->setParams(settings.pipeline);
+  } else if (pipeline_->params().scale != settings.pipeline.scale) {
+    pipeline_->setScale(settings.pipeline.scale);
   }
   revision_ = settings.revision;
   return *pipeline_;

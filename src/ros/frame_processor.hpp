@@ -49,6 +49,7 @@ struct FrameReport {
   std::size_t quasi_dense_seeds = 0;
   double valid_share = 0.0;       ///< of the pixels
   double rectification_ms = 0.0;  ///< of both images
+  double scale = 1.0;             ///< of the images that were matched
 };
 
 /// Messages of one pair, null where not wanted.

@@ -33,6 +33,9 @@ void addNode(std::vector<ParamRef>& refs, NodeParams& n) {
   refs.push_back({"node.max_age_s", &n.max_age_s, 0.0, 10.0, "s",
                   "A pair whose stamp is older is dropped; 0 is off, which bags played without --clock need.",
                   "max_age", TuningStep::kExpert});
+  refs.push_back({"node.deadline_ms", &n.deadline_ms, 0.0, 10000.0, "ms",
+                  "While pairs take longer, smaller images are matched, down to 0.3 of pipeline_scale; 0 is off.",
+                  "deadline_ms", TuningStep::kExpert});
   refs.push_back({"node.nice", &n.nice, 0.0, 19.0, "",
                   "Nice level of the working threads; higher gives way to other processes, lowering it again needs "
                   "privileges.",

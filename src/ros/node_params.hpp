@@ -13,6 +13,7 @@ namespace fdp_stereo {
 struct NodeParams {
   double max_rate_hz = 0.0;  ///< pairs per second by their stamps; 0 = every pair
   double max_age_s = 0.0;    ///< an older pair is dropped; 0 = off, as bags need it
+  double deadline_ms = 0.0;  ///< of the processing of a pair, which smaller images keep; 0 = off
   int nice = 0;              ///< of the working threads, 0..19
   double min_depth_m = 0.0;
   double max_depth_m = 0.0;            ///< 0 = none

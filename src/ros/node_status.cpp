@@ -122,6 +122,7 @@ void describeStatus(const NodeStatus& now, const NodeStatus& before, double seco
   diagnostics.add("Pairs dropped (max_age)", now.too_old);
   diagnostics.add("Pairs waiting", now.waiting);
   diagnostics.addf("Processing (ms)", "%.1f", now.processing_ms);
+  diagnostics.addf("Scale of the images matched", "%.2f", now.frame.scale);
   diagnostics.addf("Latency (ms)", "%.1f", now.latency_ms);
   diagnostics.add("Age of the output (ms)", age(now.age_ms));
   diagnostics.addf("Stamps of left and right apart (ms)", "%.1f", now.apart_ms);

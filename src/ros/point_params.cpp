@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <fdp_stereo/PointsConfig.h>
+
 #include "text.hpp"
 
 namespace fdp_stereo {
@@ -75,30 +77,62 @@ void checkOrder(const Limit& low, const Limit& high, const Warn& warn) {
   high.value = high.fallback;
 }
 
+void checkOrders(RangeScanParams& scan, const Warn& warn) {
+  const RangeScanParams defaults;
+  checkOrder({"scan_min_height", scan.min_height_m, defaults.min_height_m},
+             {"scan_max_height", scan.max_height_m, defaults.max_height_m}, warn);
+  checkOrder({"scan_range_min", scan.min_range_m, defaults.min_range_m},
+             {"scan_range_max", scan.max_range_m, defaults.max_range_m}, warn);
+}
+
+/// Calls visit(name, member of PointsConfig, value in `params`) for each parameter that can be changed live.
+template <typename Visit>
+void forEachLive(PointsNodeParams& params, Visit&& visit) {
+  using Config = PointsConfig;
+  visit("points_decimation", &Config::points_decimation, params.points.decimation);
+  visit("min_confidence", &Config::min_confidence, params.points.min_confidence);
+  visit("max_depth_error", &Config::max_depth_error, params.points.max_depth_error);
+  visit("max_depth", &Config::max_depth, params.points.max_depth);
+  visit("scan_min_height", &Config::scan_min_height, params.scan.min_height_m);
+  visit("scan_max_height", &Config::scan_max_height, params.scan.max_height_m);
+  visit("scan_range_min", &Config::scan_range_min, params.scan.min_range_m);
+  visit("scan_range_max", &Config::scan_range_max, params.scan.max_range_m);
+  visit("scan_angle_increment", &Config::scan_angle_increment, params.scan.increment_rad);
+}
+
 }  // namespace
 
 PointsNodeParams readPointsNodeParams(const ros::NodeHandle& private_node, const Warn& warn) {
   PointsNodeParams params;
   Reader reader(private_node, warn);
-  reader.read("points_decimation", 1, 64, params.points.decimation);
-  reader.read("min_confidence", 0.0, 1.0, params.points.min_confidence);
-  reader.read("max_depth_error", 0.0, 1000.0, params.points.max_depth_error);
-  reader.read("max_depth", 0.0, 10000.0, params.points.max_depth);
+  const PointsConfig min = PointsConfig::__getMin__();
+  const PointsConfig max = PointsConfig::__getMax__();
+  forEachLive(params,
+              [&](const char* name, auto member, auto& value) { reader.read(name, min.*member, max.*member, value); });
   reader.read("scan_frame", params.scan_frame);
-  reader.read("scan_min_height", -1000.0, 1000.0, params.scan.min_height_m);
-  reader.read("scan_max_height", -1000.0, 1000.0, params.scan.max_height_m);
-  reader.read("scan_range_min", 0.0, 1000.0, params.scan.min_range_m);
-  reader.read("scan_range_max", 0.01, 1000.0, params.scan.max_range_m);
-  reader.read("scan_angle_increment", 0.0005, 0.5, params.scan.increment_rad);
   reader.read("queue_size", 1, 1000, params.queue_size);
   reader.read("diagnostic_period", 0.02, 3600.0, params.diagnostic_period_s);
-  const RangeScanParams defaults;
-  checkOrder({"scan_min_height", params.scan.min_height_m, defaults.min_height_m},
-             {"scan_max_height", params.scan.max_height_m, defaults.max_height_m}, warn);
-  checkOrder({"scan_range_min", params.scan.min_range_m, defaults.min_range_m},
-             {"scan_range_max", params.scan.max_range_m, defaults.max_range_m}, warn);
+  checkOrders(params.scan, warn);
   reader.warnOfUnknown();
   return params;
+}
+
+PointsConfig liveConfig(PointsNodeParams params) {
+  PointsConfig config = PointsConfig::__getDefault__();
+  forEachLive(params, [&](const char*, auto member, auto& value) { config.*member = value; });
+  return config;
+}
+
+void applyLive(PointsConfig& config, PointsNodeParams& params, const Warn& warn) {
+  forEachLive(params, [&](const char* name, auto member, auto& value) {
+    if (config.*member == config.*member) {
+      value = config.*member;
+    } else {
+      warn(text("~", name, " = nan is no number; it stays ", value));
+    }
+  });
+  checkOrders(params.scan, warn);
+  config = liveConfig(params);
 }
 
 }  // namespace fdp_stereo

@@ -11,6 +11,8 @@
 
 namespace fdp_stereo {
 
+class PointsConfig;
+
 /// Private parameters of the nodelet fdp_stereo/points.
 struct PointsNodeParams {
   PointParams points;
@@ -23,5 +25,11 @@ struct PointsNodeParams {
 /// `warn` gets a line per value that is not possible, which is replaced by its default, and per unknown name.
 PointsNodeParams readPointsNodeParams(const ros::NodeHandle& private_node,
                                       const std::function<void(const std::string&)>& warn);
+
+/// Those that can be changed live, as dynamic_reconfigure has them.
+PointsConfig liveConfig(PointsNodeParams params);
+
+/// Takes them over; what does not go together is replaced, in `config` too, and told to `warn`.
+void applyLive(PointsConfig& config, PointsNodeParams& params, const std::function<void(const std::string&)>& warn);
 
 }  // namespace fdp_stereo

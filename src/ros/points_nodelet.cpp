@@ -3,12 +3,15 @@
 //
 // Disparity to points, free space and scan. What is computed is in point_messages.
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <thread>
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/server.h>
+#include <fdp_stereo/PointsConfig.h>
 #include <image_transport/image_transport.h>
 #include <nodelet/nodelet.h>
 #include <tf2_ros/transform_listener.h>
@@ -41,7 +44,8 @@ class PointsNodelet : public nodelet::Nodelet {
   void onInit() override;
   void start();
   void release();
-  void readParams();
+  void reconfigure();
+  PointsNodeParams params() const;
   void advertise();
   void onSubscriberChange();
   void subscribe();
@@ -54,14 +58,17 @@ class PointsNodelet : public nodelet::Nodelet {
 
   void work(const PointFrame& frame, const std::atomic<bool>& cancel);
   void publish(const PointFrame& frame, const std::atomic<bool>& cancel, std::vector<std::string>& warnings);
-  void publishScan(const PointView& view, const cv::Mat& free_depth, const std::atomic<bool>& cancel);
+  void publishScan(const PointView& view, const cv::Mat& free_depth, const PointsNodeParams& params,
+                   const std::atomic<bool>& cancel);
   Eigen::Isometry3d scanFromCamera(const std_msgs::Header& header, const std::atomic<bool>& cancel) const;
 
   void warn(const std::string& text);
   void record(const std::string& problem, std::vector<std::string> odd);
   void describe(diagnostic_updater::DiagnosticStatusWrapper& diagnostics);
 
+  mutable std::mutex params_mutex_;
   PointsNodeParams params_;
+  std::unique_ptr<dynamic_reconfigure::Server<PointsConfig>> reconfigure_;
   PointTopics topics_;
   std::mutex connect_mutex_;  ///< held over advertise: a subscriber may come before the publisher is stored
   bool subscribed_ = false;
@@ -90,6 +97,7 @@ void PointsNodelet::release() {
   diagnostics_task_.reset();
   updater_.reset();
   unsubscribe();
+  reconfigure_.reset();
   worker_.reset();
 }
 
@@ -109,6 +117,7 @@ void PointsNodelet::start() {
   topics_ = {node.resolveName("disparity"), node.resolveName("left/camera_info"), node.resolveName("left/image_rect"),
              node.resolveName("confidence"), node.resolveName("depth_error")};
   params_ = readPointsNodeParams(getPrivateNodeHandle(), [this](const std::string& problem) { warn(problem); });
+  reconfigure();
   collector_ = std::make_unique<PointFrameCollector>(static_cast<std::size_t>(params_.queue_size));
   worker_ = std::make_unique<NewestWorker<PointFrame>>(
       [this](const PointFrame& frame, const std::atomic<bool>& cancel) { work(frame, cancel); });
@@ -118,6 +127,23 @@ void PointsNodelet::start() {
   diagnostics_task_ = std::make_unique<PeriodicTask>(std::chrono::duration<double>(params_.diagnostic_period_s),
                                                      [this] { updater_->force_update(); });
   advertise();
+}
+
+/// From now on by dynamic_reconfigure, beginning with what was read.
+void PointsNodelet::reconfigure() {
+  const PointsConfig initial = liveConfig(params_);
+  reconfigure_ = std::make_unique<dynamic_reconfigure::Server<PointsConfig>>(getPrivateNodeHandle());
+  reconfigure_->updateConfig(initial);
+  reconfigure_->setCallback([this](PointsConfig& config, std::uint32_t) {
+    const std::lock_guard<std::mutex> lock(params_mutex_);
+    applyLive(config, params_, [this](const std::string& problem) { warn(problem); });
+  });
+}
+
+/// One frame is made with one set.
+PointsNodeParams PointsNodelet::params() const {
+  const std::lock_guard<std::mutex> lock(params_mutex_);
+  return params_;
 }
 
 void PointsNodelet::advertise() {
@@ -205,20 +231,22 @@ void PointsNodelet::work(const PointFrame& frame, const std::atomic<bool>& cance
 
 void PointsNodelet::publish(const PointFrame& frame, const std::atomic<bool>& cancel,
                             std::vector<std::string>& warnings) {
-  const PointView view = decodePointFrame(frame, params_.points, topics_, warnings);
-  if (points_.getNumSubscribers() > 0) points_.publish(toPointCloud(view, params_.points.decimation));
+  const PointsNodeParams params = this->params();
+  const PointView view = decodePointFrame(frame, params.points, topics_, warnings);
+  if (points_.getNumSubscribers() > 0) points_.publish(toPointCloud(view, params.points.decimation));
   const bool free_wanted = free_space_.getNumSubscribers() > 0;
   const bool scan_wanted = scan_.getNumSubscribers() > 0;
   if (!free_wanted && !scan_wanted) return;
   const cv::Mat free_depth = freeDepth(view);
   if (free_wanted) free_space_.publish(toFreeSpaceCloud(view, free_depth));
-  if (scan_wanted) publishScan(view, free_depth, cancel);
+  if (scan_wanted) publishScan(view, free_depth, params, cancel);
 }
 
-void PointsNodelet::publishScan(const PointView& view, const cv::Mat& free_depth, const std::atomic<bool>& cancel) {
+void PointsNodelet::publishScan(const PointView& view, const cv::Mat& free_depth, const PointsNodeParams& params,
+                                const std::atomic<bool>& cancel) {
   try {
     const Eigen::Isometry3d place = scanFromCamera(view.header, cancel);
-    scan_.publish(toLaserScan(view, free_depth, place, params_.scan_frame, params_.scan));
+    scan_.publish(toLaserScan(view, free_depth, place, params.scan_frame, params.scan));
   } catch (const tf2::TransformException& error) {
     fail("scan: no transform from ", quoteForLog(view.header.frame_id), " to ~scan_frame ",
          quoteForLog(params_.scan_frame), ": ", error.what());

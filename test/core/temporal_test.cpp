@@ -265,6 +265,23 @@ TEST(TemporalPipeline, AStreamHasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_GE(repeated, 3);
 }
 
+TEST(TemporalPipeline, AnotherScaleKeepsTheImagesAndForgetsTheDisparity) {
+  Pipeline stream(paramsOf()), single(paramsOf());
+  stream.setStream(true);
+  stream.run(scene().left, scene().right);
+  const cv::Mat expected = single.run(scene().left, scene().right).disparity;
+  for (const double scale : {0.5, 1.0}) {
+    stream.setScale(scale);
+    const PipelineResult result = stream.run(scene().left, scene().right);
+    EXPECT_EQ(result.temporal.reset, "");
+    EXPECT_FALSE(result.temporal.repeated);
+    EXPECT_EQ(reference::sameBits(result.disparity, expected), scale == 1.0);
+  }
+  EXPECT_GT(stream.run(scene().left, scene().right).temporal.kept_share, 0.9);
+  EXPECT_THROW(stream.setScale(0.0), std::invalid_argument);
+  EXPECT_EQ(stream.params().scale, 1.0);
+}
+
 TEST(TemporalPipeline, ARepeatedResultIsTheCallersOwn) {
   Pipeline pipeline(paramsOf());
   pipeline.setStream(true);

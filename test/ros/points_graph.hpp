@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <dynamic_reconfigure/config_tools.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 
@@ -22,6 +23,15 @@ class PointsNodeletHost {
   }
   ~PointsNodeletHost() { loader_.unload(name_); }
   bool loaded() const { return loaded_; }
+  /// A live edit; the value that holds then. Fails the test where the service does not answer.
+  template <typename Value>
+  Value edit(const std::string& name, Value value) {
+    dynamic_reconfigure::Reconfigure call;
+    dynamic_reconfigure::ConfigTools::appendParameter(call.request.config, name, value);
+    EXPECT_TRUE(ros::service::call(name_ + "/set_parameters", call));
+    dynamic_reconfigure::ConfigTools::getParameter(call.response.config, name, value);
+    return value;
+  }
 
  private:
   std::string name_;

@@ -4,10 +4,13 @@
 // fdp_stereo/points behind a matcher that this test plays.
 #include <cmath>
 
+#include <fdp_stereo/PointsConfig.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/LaserScan.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
 
+#include "point_params.hpp"
 #include "points_graph.hpp"
 
 namespace fdp_stereo {
@@ -68,6 +71,12 @@ class Matcher {
   ros::NodeHandle node_;
   std::vector<ros::Publisher> publishers_;
 };
+
+std::size_t knownPoints(const PointCloud2& cloud) {
+  std::size_t known = 0;
+  for (sensor_msgs::PointCloud2ConstIterator<float> z(cloud, "z"); z != z.end(); ++z) known += std::isnan(*z) ? 0 : 1;
+  return known;
+}
 
 TEST(PointsNodelet, NothingIsDoneWithoutASubscriber) {
   Matcher matcher("/lazy");
@@ -161,6 +170,59 @@ TEST(PointsNodelet, BadFramesAreSaidAndRecoveredFrom) {
         10.0))
         << bad.said[0];
     EXPECT_TRUE(matcher.process(points)) << "recovers";
+  }
+}
+
+TEST(PointsNodelet, ParametersCanBeChangedLive) {
+  CameraOnBase camera;
+  Matcher matcher("/live");
+  PointsNodeletHost host("/live", {{"points_decimation", 2}});
+  Inbox<PointCloud2> points(ros::NodeHandle("/live"), "points2");
+  Inbox<LaserScan> scan(ros::NodeHandle("/live"), "scan");
+  ASSERT_TRUE(matcher.waitForSubscribers(5));
+  ASSERT_EQ(matcher.process(points)->width, 80U) << "as it was started";
+  host.edit("points_decimation", 4);
+  EXPECT_EQ(matcher.process(points)->width, 40U);
+  EXPECT_EQ(host.edit("points_decimation", 1000), 64) << "clamped";
+  EXPECT_GT(knownPoints(*matcher.process(points)), 0U);
+  host.edit("points_decimation", 1);
+  const std::size_t all = knownPoints(*matcher.process(points));
+  const std::map<std::string, double> limits{{"max_depth_error", 1e-6}, {"max_depth", 0.5}};
+  for (const auto& [name, value] : limits) {
+    host.edit(name, value);
+    EXPECT_EQ(knownPoints(*matcher.process(points)), 0U) << name;
+    host.edit(name, 0.0);
+    EXPECT_EQ(knownPoints(*matcher.process(points)), all) << name;
+  }
+  host.edit("scan_range_max", 7.0);
+  EXPECT_FLOAT_EQ(matcher.process(scan)->range_max, 7.0F);
+}
+
+TEST(PointsNodelet, LiveEditsThatDoNotGoTogetherAreSaidAndReplaced) {
+  LogLines log;
+  PointsNodeletHost host("/edits");
+  EXPECT_EQ(host.edit("scan_range_min", 50.0), 0.1);
+  EXPECT_NE(log.wait({"~scan_range_min = 50", "below ~scan_range_max = 5"}, 5.0), "");
+  EXPECT_EQ(host.edit("min_confidence", 7.0), 1.0);
+  EXPECT_EQ(host.edit("max_depth", std::nan("")), 0.0);
+  double written = 7.0;
+  EXPECT_TRUE(ros::param::get("/edits/points_nodelet/max_depth", written));
+  EXPECT_EQ(written, 0.0);
+}
+
+/// What rqt shows before anything is set.
+TEST(PointsNodelet, TheDefaultsOfTheCfgFileAreThoseOfTheCode) {
+  const PointsConfig cfg = PointsConfig::__getDefault__();
+  const PointsConfig code = liveConfig({});
+  for (const auto& description : PointsConfig::__getParamDescriptions__()) {
+    boost::any ours, theirs;
+    description->getValue(cfg, theirs);
+    description->getValue(code, ours);
+    if (description->type == "int") {
+      EXPECT_EQ(boost::any_cast<int>(ours), boost::any_cast<int>(theirs)) << description->name;
+    } else {
+      EXPECT_EQ(boost::any_cast<double>(ours), boost::any_cast<double>(theirs)) << description->name;
+    }
   }
 }
 

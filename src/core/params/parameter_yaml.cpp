@@ -62,12 +62,13 @@ bool belongsToTheNode(const std::string& name) {
       "approximate_sync", "approximate_sync_tolerance", "diagnostic_period", "image_transport", "left_mask", "nearest",
       "queue_size", "rectify", "right_mask", "seeds_fixed_frame", "watch_period",
       // live
-      "max_age", "max_depth", "max_depth_error", "max_rate", "min_confidence", "min_depth", "nice", "seeds_depth_trust",
-      "seeds_disparity_trust", "seeds_max_age", "seeds_points_trust", "seeds_spacing", "seeds_wait",
+      "deadline_ms", "max_age", "max_depth", "max_depth_error", "max_rate", "min_confidence", "min_depth", "nice",
+      "seeds_depth_trust", "seeds_disparity_trust", "seeds_max_age", "seeds_points_trust", "seeds_spacing",
+      "seeds_wait",
       // the same by their keys
-      "node.max_age_s", "node.max_depth_error_m", "node.max_depth_m", "node.max_rate_hz", "node.min_confidence",
-      "node.min_depth_m", "node.nice", "seeds.depth_trust", "seeds.disparity_trust", "seeds.max_age_s",
-      "seeds.points_trust", "seeds.spacing_px", "seeds.wait_s"};
+      "node.deadline_ms", "node.max_age_s", "node.max_depth_error_m", "node.max_depth_m", "node.max_rate_hz",
+      "node.min_confidence", "node.min_depth_m", "node.nice", "seeds.depth_trust", "seeds.disparity_trust",
+      "seeds.max_age_s", "seeds.points_trust", "seeds.spacing_px", "seeds.wait_s"};
   return names.count(name) != 0;
 }
 
