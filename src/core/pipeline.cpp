@@ -21,6 +21,7 @@
 #include "images/cost_views.hpp"
 #include "images/temporal_average.hpp"
 #include "images/view_masks.hpp"
+#include "refinement/view_agreement.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
@@ -109,11 +110,11 @@ void extendPair(StereoPair& pair) {
   extend(pair.right, pair.right_grey);
 }
 
-/// Filters the speckles of what is seen, and keeps of the rest what that explains.
-void dropUnseen(const cv::Mat& blind, const SpeckleFilterParams& speckles, cv::Mat& disparity) {
+/// Filters the regions of what is seen, and keeps of the rest what that explains.
+void dropUnseen(const cv::Mat& blind, const SeenViews& views, const SpeckleFilterParams& speckles, cv::Mat& disparity) {
   const cv::Mat guessed = disparity.clone();
   disparity.setTo(kInvalidDisparity, blind);
-  filterSpeckles(disparity, speckles);
+  filterRegions(views, speckles, disparity);
   guessed.copyTo(disparity, blind);
   dropUnexplained(blind, disparity);
 }
@@ -180,8 +181,9 @@ struct Pipeline::Frame {
   StereoPair pair;  ///< of the size that is matched; the right view aligned
   CostViews cost;   ///< the same, as the matching cost sees it
   DisparityRange search;
-  cv::Mat guide;  ///< left, CV_8UC1
-  cv::Mat blind;  ///< CV_8UC1, 255 where the left view holds no information
+  cv::Mat guide;    ///< left, CV_8UC1
+  cv::Mat blind;    ///< CV_8UC1, 255 where the left view holds no information
+  cv::Mat vouched;  ///< CV_8UC1, 255 where another sensor has seen something; empty without one
   ViewMasks masks;
   OptimizerOutput optimized;
 };
@@ -281,7 +283,7 @@ PipelineResult Pipeline::repeat(PipelineResult now) const {
 void Pipeline::compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel,
                        StageClock& clock, PipelineResult& result) {
   const Scaling scaling(given.left.size(), params_.scale);
-  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}};
+  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}, {}};
   frame.masks = shrinkMasks(state_->masks, frame.pair.left.size());
   checkMemory(params_, frame.pair.left.size(), frame.search);
   frame.blind = blindPixels(frame.pair.left_grey);
@@ -344,8 +346,10 @@ void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) 
   frame.guide = eightBitGrey(frame.pair.left, frame.pair.left_grey, buffer);
   for (const Seed& seed : result.seeds) {  // another sensor sees where the cameras do not
     if (seed.source == SeedSource::kFeature) continue;
-    cv::circle(frame.blind, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(0), cv::FILLED);
+    if (frame.vouched.empty()) frame.vouched = cv::Mat::zeros(frame.guide.size(), CV_8UC1);
+    cv::circle(frame.vouched, cv::Point(cvRound(seed.x), cvRound(seed.y)), kSensorReachPx, cv::Scalar(255), cv::FILLED);
   }
+  if (!frame.vouched.empty()) frame.blind.setTo(0, frame.vouched);
   if (!frame.masks.left.empty()) frame.blind.setTo(255, frame.masks.left);
   if (!params_.quasi_dense.enabled) return;
   result.quasi_dense_seeds =
@@ -404,10 +408,13 @@ void Pipeline::refine(Frame& frame, PipelineResult& result) const {
   if (params_.left_right_check.enabled && !frame.optimized.disparity_right.empty()) {
     checkLeftRight(disparity, frame.optimized.disparity_right, params_.left_right_check);
   }
-  if (params_.hole_filling.enabled) {
+  cv::Mat seen = params_.hole_filling.enabled ? disparity.clone() : disparity;
+  cv::Mat buffer;
+  const SeenViews views{frame.guide, eightBitGrey(frame.pair.right, frame.pair.right_grey, buffer), frame.vouched};
+  dropUnseen(frame.blind, views, params_.speckle_filter, seen);
+  if (params_.hole_filling.enabled) {  // what is guessed helps to fill, but is not known
     filterSpeckles(disparity, params_.speckle_filter);
-  } else {
-    dropUnseen(frame.blind, params_.speckle_filter, disparity);
+    frame.blind |= noneMask(seen) & (disparity == disparity);
   }
   const cv::Mat closed = params_.hole_closing.enabled ? closeHoles(disparity) : cv::Mat();
   judge(frame, roughness, closed, result);
