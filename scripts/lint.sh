@@ -31,8 +31,8 @@ lint_shell() { git ls-files -- 'scripts/*.sh' 'test/*.sh' .ci/run | xargs shellc
 lint_catkin() { catkin_lint -W2 .; }
 # Those of the given paths that the build compiles: one without ROS has no commands for src/ros.
 compiled() { while read -r path; do ! grep -qF "\"$FDP_STEREO_ROOT/$path\"" "$build/compile_commands.json" || echo "$path"; done; }
-lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' 'examples/*.cpp' | compiled | xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet \
-  --header-filter="$FDP_STEREO_ROOT/(include|src|tools)/.*"; }
+lint_tidy() { git ls-files -- 'src/*.cpp' 'tools/*.cpp' 'examples/*.cpp' | compiled |
+  nice -n 19 xargs -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet --header-filter="$FDP_STEREO_ROOT/(include|src|tools)/.*"; }
 
 case "${1:-all}" in
   format | functions | shell | catkin | tidy) "lint_$1" ;;

@@ -33,7 +33,7 @@ class CommandsTest(unittest.TestCase):
                     continue
                 count += 1
                 done = subprocess.run(["bash", "-euo", "pipefail", "-c", code], cwd=ROOT, stdin=subprocess.DEVNULL,
-                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1200)
                 with self.subTest(page=os.path.relpath(page, ROOT), code=code):
                     self.assertEqual(done.returncode, 0, done.stdout[-2000:])
         self.assertGreater(count, 0)

@@ -5,7 +5,7 @@
 # doctor_test.sh DEVEL: doctor.launch beside a node and a recording that plays: all well, exchanged images, a throttled
 # camera. It ends by itself and without calling that a death.
 # shellcheck source=test/ros/own_master.sh
-. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11420
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1"
 bag="$1/share/fdp_stereo/sample/motorcycle.bag"
 
 start_master
@@ -24,7 +24,7 @@ stop() {
 ask() {
   local expected="$1"
   shift
-  timeout 120 roslaunch fdp_stereo doctor.launch image:=image_raw seconds:=8 "$@" </dev/null >"$work/said" 2>&1 ||
+  timeout 600 roslaunch fdp_stereo doctor.launch image:=image_raw seconds:=8 "$@" </dev/null >"$work/said" 2>&1 ||
     { echo "roslaunch: exit code $?" >&2; cat "$work/said" >&2; exit 1; }
   if ! grep -qE "$expected" "$work/said" || grep -q 'REQUIRED' "$work/said"; then
     echo "expected: $expected" >&2

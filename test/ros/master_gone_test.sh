@@ -4,7 +4,7 @@
 #
 # master_gone_test.sh DEVEL: the ROS master dies and comes back; the node lives on and says so.
 # shellcheck source=test/ros/own_master.sh
-. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11417
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1"
 
 wait_for() {
   for _ in $(seq 300); do

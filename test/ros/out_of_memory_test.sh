@@ -6,7 +6,7 @@
 # enough, it says what is wrong and no signal ends it.
 export MALLOC_ARENA_MAX="${MALLOC_ARENA_MAX:-2}" # an arena reserves 64 MB of addresses
 # shellcheck source=test/ros/own_master.sh
-. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" 11419
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1"
 start_master
 
 rosbag play -q -l "$1/share/fdp_stereo/sample/motorcycle.bag" </dev/null >"$work/play.log" 2>&1 &

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# For tests with a ROS master of their own, sourced as: own_master.sh DEVEL PORT. Makes the folder $work for logs and
+# For tests with a ROS master of their own, sourced as: own_master.sh DEVEL. Makes the folder $work for logs and
 # start_master; at the end, all background jobs end and $work goes.
 set -euo pipefail
 export PATH="/usr/bin:/bin:$PATH"
@@ -12,7 +12,8 @@ set +u
 set -u
 work="$(mktemp -d)"
 export PYTHONUNBUFFERED=1 # what a program in the background prints can be read at once
-export ROS_MASTER_URI="http://localhost:$2" ROS_HOME="$work" ROS_LOG_DIR="$work"
+port=$((12000 + $$ % 20000)) # another one for each test that runs, below those that connections get
+export ROS_MASTER_URI="http://localhost:$port" ROS_HOME="$work" ROS_LOG_DIR="$work"
 trap 'jobs -p | xargs -r kill 2>/dev/null || true; rm -rf "$work"' EXIT
 
 start_master() {

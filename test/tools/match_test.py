@@ -217,7 +217,7 @@ class MatchTest(unittest.TestCase):
                 done = subprocess.run(
                     [os.path.join(BIN, "match"), self.left, self.right, "-o", self.path("o.pfm"), "--overwrite", "--preset",
                      preset, "--num-disparities", "200", "--set", "local_expansion.iterations=0"],
-                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300,
+                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=600,
                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20)))
                 with self.subTest(preset=preset, limit_mb=limit_mb):
                     self.assertGreaterEqual(done.returncode, 0, "ended by a signal: " + done.stderr)

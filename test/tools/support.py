@@ -11,7 +11,7 @@ BIN = os.environ["FDP_STEREO_BIN"]
 SHIFTS = (4, 9)  # px: background and foreground of the rendered pair
 
 
-def run(tool, *arguments, timeout=120):
+def run(tool, *arguments, timeout=600):
     """Runs a tool and returns (exit code, stdout, stderr)."""
     done = subprocess.run([os.path.join(BIN, tool), *map(str, arguments)], stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=timeout)
