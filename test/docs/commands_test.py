@@ -56,7 +56,7 @@ class CommandsTest(unittest.TestCase):
             with open(os.path.join(ROOT, "src", "ros", source)) as file:
                 text = file.read()
             names.update(re.findall(r'(?:advertise(?:Camera|Image)?|subscribe)(?:<[^>]+>)?\(\s*(?:node_, )?"([\w/]+)"', text))
-            names.update(re.findall(r'(?:param(?:<[^>]+>)?|period|reader\.read)\("(\w+)"', text))
+            names.update(re.findall(r'(?:param(?:<[^>]+>)?|period|reader\.read|visit)\("(\w+)"', text))
             if source == "node_params.cpp":
                 names.update(re.findall(r'{"(?:node|seeds)\.\w+".*?"(\w+)",\s*TuningStep::', text, flags=re.S))
         self.assertLessEqual({"disparity", "left/camera_info", "seeds/depth", "queue_size", "max_rate", "seeds_wait",
