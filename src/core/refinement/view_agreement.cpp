@@ -11,8 +11,8 @@ namespace fdp_stereo {
 namespace {
 
 constexpr int kReachesPx[] = {2, 6};  ///< of the differences along the row
-constexpr int kRowStep = 2;            ///< half of the rows tell enough of a region
-constexpr int kSteps = 16;             ///< per pixel and grey level
+constexpr int kRowStep = 2;           ///< half of the rows tell enough of a region
+constexpr int kSteps = 16;            ///< per pixel and grey level
 
 /// More is not by chance, which chooses the best of many disparities: the smaller a region, the better it can.
 double leastCorrelation(std::int64_t count) { return 0.25 + 1.5 / std::sqrt(static_cast<double>(count)); }
