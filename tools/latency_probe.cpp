@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A synthetic stereo camera that measures the node it feeds: the time of live edits, the age of the disparities against
-// the time that the node says it needed, and the time from a pair to its disparity against the core's alone.
+// the time that the node says it needed, the time from a pair to its disparity against the core's alone, that from raw
+// images rectified by the node against image_proc's, and what a deadline does beside other work.
 // Private parameters: rate (Hz), edits, seconds, width, height, preset and range (of the core beside the node),
-// pairs (compared one by one with the core instead), inside (load the nodelet into this process, as a manager does).
+// pairs (compared one by one with the core instead), inside (load the nodelet into this process, as a manager does),
+// rectify (compare pairs of raw images), deadline (measure that of the node; ms).
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <mutex>
@@ -22,6 +26,7 @@
 #include <ros/ros.h>
 #include <stereo_msgs/DisparityImage.h>
 #include <boost/make_shared.hpp>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "command_line.hpp"
@@ -45,8 +50,8 @@ double percentile(std::vector<double> values, double share) {
 
 /// A slanted, textured surface seen by both cameras.
 struct SyntheticPair {
-  explicit SyntheticPair(cv::Size size) : left(size, CV_8UC1) {
-    cv::RNG rng(1);
+  SyntheticPair(cv::Size size, unsigned texture) : left(size, CV_8UC1) {
+    cv::RNG rng(texture);
     right.create(size, CV_8UC1);
     rng.fill(right, cv::RNG::UNIFORM, 0, 256);
     cv::GaussianBlur(right, right, cv::Size(), 1.5);
@@ -66,17 +71,36 @@ struct SyntheticPair {
   cv::Mat right;
 };
 
+/// Shown in turns: what stays the same would not be matched again.
+using Scenes = std::array<SyntheticPair, 2>;
+
+/// What a camera with the distortion of `info` sees where a rectified one sees `image`.
+cv::Mat distorted(const cv::Mat& image, const sensor_msgs::CameraInfo& info) {
+  std::vector<cv::Point2f> places;
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) places.emplace_back(static_cast<float>(x), static_cast<float>(y));
+  }
+  const cv::Matx33d camera(info.K.data());
+  std::vector<cv::Point2f> seen;
+  cv::undistortPoints(places, seen, camera, info.D, cv::noArray(), camera);
+  cv::Mat raw;
+  cv::remap(image, raw, cv::Mat(seen).reshape(2, image.rows), cv::noArray(), cv::INTER_LINEAR);
+  return raw;
+}
+
 class Probe {
  public:
-  Probe(double rate_hz, const SyntheticPair& pair) : rate_hz_(rate_hz) {
-    ros::NodeHandle node;
-    left_ = node.advertise<sensor_msgs::Image>("left/image_rect", 2);
-    right_ = node.advertise<sensor_msgs::Image>("right/image_rect", 2);
+  /// image: name of the topics. Raw images are distorted.
+  Probe(const ros::NodeHandle& base, const std::string& image, double rate_hz, const Scenes& scenes)
+      : rate_hz_(rate_hz) {
+    ros::NodeHandle node(base);
+    left_ = node.advertise<sensor_msgs::Image>("left/" + image, 2);
+    right_ = node.advertise<sensor_msgs::Image>("right/" + image, 2);
     left_info_ = node.advertise<sensor_msgs::CameraInfo>("left/camera_info", 2);
     right_info_ = node.advertise<sensor_msgs::CameraInfo>("right/camera_info", 2);
     disparity_ = node.subscribe("disparity", 10, &Probe::onDisparity, this, ros::TransportHints().tcpNoDelay());
     diagnostics_ = node.subscribe("/diagnostics", 10, &Probe::onDiagnostics, this);
-    makeMessages(pair);
+    makeMessages(scenes, image == "image_raw");
   }
 
   bool connected() const {
@@ -88,8 +112,9 @@ class Probe {
   ros::Time publish() {
     const auto left_info = boost::make_shared<sensor_msgs::CameraInfo>(left_camera_);
     const auto right_info = boost::make_shared<sensor_msgs::CameraInfo>(right_camera_);
-    const auto left = boost::make_shared<sensor_msgs::Image>(left_image_);
-    const auto right = boost::make_shared<sensor_msgs::Image>(right_image_);
+    scene_ = 1 - scene_;
+    const auto left = boost::make_shared<sensor_msgs::Image>(left_images_[scene_]);
+    const auto right = boost::make_shared<sensor_msgs::Image>(right_images_[scene_]);
     const ros::Time stamp = ros::Time::now();
     for (auto* header : {&left->header, &right->header, &left_info->header, &right_info->header}) {
       header->stamp = stamp;
@@ -126,18 +151,37 @@ class Probe {
                 ages_ms_.size(), percentile(ages_ms_, 0.5), age, processing, bound, age <= bound ? "held" : "NOT held");
   }
 
+  /// What the node did since the last call.
+  void reportDeadline(const char* phase, double deadline_ms) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const double processing = percentile(processing_ms_, 0.95);
+    std::printf("deadline %.0f ms, %s: %zu pairs, processing median %.1f ms, 95 %% %.1f ms; last scale %.2f: %s\n",
+                deadline_ms, phase, processing_ms_.size(), percentile(processing_ms_, 0.5), processing, scale_,
+                processing <= deadline_ms ? "held" : "NOT held");
+    processing_ms_.clear();
+  }
+
  private:
-  void makeMessages(const SyntheticPair& pair) {
-    std_msgs::Header header;
-    header.frame_id = "camera";
-    left_image_ = *fdp_stereo::toImageMessage(pair.left, header);
-    right_image_ = *fdp_stereo::toImageMessage(pair.right, header);
-    left_camera_.header = header;
-    left_camera_.width = left_image_.width;
-    left_camera_.height = left_image_.height;
-    left_camera_.P = {300.0, 0.0, pair.left.cols / 2.0, 0.0, 0.0, 300.0, pair.left.rows / 2.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  void makeMessages(const Scenes& scenes, bool raw) {
+    left_camera_.header.frame_id = "camera";
+    const cv::Size size = scenes[0].left.size();
+    left_camera_.width = static_cast<std::uint32_t>(size.width);
+    left_camera_.height = static_cast<std::uint32_t>(size.height);
+    left_camera_.distortion_model = "plumb_bob";
+    left_camera_.D.assign(5, 0.0);
+    if (raw) left_camera_.D = {-0.25, 0.06, 0.0005, -0.0003, 0.0};
+    left_camera_.K = {0.6 * size.width, 0.0, size.width / 2.0, 0.0, 0.6 * size.width, size.height / 2.0, 0.0, 0.0, 1.0};
+    left_camera_.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    for (int i = 0; i < 3; ++i) std::copy_n(left_camera_.K.data() + 3 * i, 3, left_camera_.P.data() + 4 * i);
     right_camera_ = left_camera_;
-    right_camera_.P[3] = -30.0;
+    right_camera_.P[3] = -0.1 * right_camera_.P[0];
+    const auto message = [&](const cv::Mat& image) {
+      return *fdp_stereo::toImageMessage(raw ? distorted(image, left_camera_) : image, left_camera_.header);
+    };
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      left_images_[i] = message(scenes[i].left);
+      right_images_[i] = message(scenes[i].right);
+    }
   }
 
   void onDisparity(const stereo_msgs::DisparityImageConstPtr& message) {
@@ -149,27 +193,33 @@ class Probe {
     arrived_.notify_all();
   }
 
+  /// The newest pair of each message, once.
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const auto& status : message->status) {
-      for (const auto& entry : status.values) {
-        if (entry.key == "Processing (ms)" && std::stod(entry.value) > 0.0) {
-          processing_ms_.push_back(std::stod(entry.value));
-        }
-      }
+      std::map<std::string, std::string> values;
+      for (const auto& entry : status.values) values[entry.key] = entry.value;
+      const std::string& processed = values["Pairs processed"];
+      if (processed.empty() || processed == "0" || processed == processed_) continue;
+      processed_ = processed;
+      processing_ms_.push_back(std::stod(values["Processing (ms)"]));
+      scale_ = std::stod(values["Scale of the images matched"]);
     }
   }
 
   double rate_hz_;
   ros::Publisher left_, right_, left_info_, right_info_;
   ros::Subscriber disparity_, diagnostics_;
-  sensor_msgs::Image left_image_, right_image_;
+  std::array<sensor_msgs::Image, 2> left_images_, right_images_;
+  std::size_t scene_ = 0;
   sensor_msgs::CameraInfo left_camera_, right_camera_;
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   ros::Time newest_;
   std::map<ros::Time, Clock::time_point> sent_;
   std::vector<double> ages_ms_, processing_ms_;
+  std::string processed_;  ///< pairs, as the node says
+  double scale_ = 1.0;
 };
 
 /// Edits one parameter to and fro, 10 a second, as a person with a slider does.
@@ -189,12 +239,17 @@ std::vector<double> timeEdits(int count) {
   return times_ms;
 }
 
+constexpr int kWarmUp = 3;  // pairs
+
+void waitFor(const std::function<bool()>& condition) {
+  while (ros::ok() && !condition()) ros::WallDuration(0.01).sleep();
+}
+
 /// The same pair through the node and through the core, in turns, so that both meet the same machine.
 void compareWithCore(Probe& probe, const SyntheticPair& pair, const std::string& preset, int range, int pairs) {
   fdp_stereo::PipelineParams params = fdp_stereo::loadPreset(preset);
   params.search = {0, range};
   fdp_stereo::Pipeline pipeline(params);
-  constexpr int kWarmUp = 3;
   std::vector<double> node_ms;
   std::vector<double> core_ms;
   for (int i = 0; i < kWarmUp + pairs && ros::ok(); ++i) {
@@ -210,6 +265,46 @@ void compareWithCore(Probe& probe, const SyntheticPair& pair, const std::string&
   std::printf(
       "pair to disparity: %zu pairs of %d x %d px, range %d, median %.1f ms; the core alone %.1f ms; ratio %.2f\n",
       node_ms.size(), pair.left.cols, pair.left.rows, range, node, core, node / core);
+}
+
+/// Raw pairs to a node that rectifies them, and to one behind image_proc, in turns.
+void compareRectification(const Scenes& scenes, int pairs) {
+  Probe internal(ros::NodeHandle("internal"), "image_raw", 1.0, scenes);
+  Probe image_proc(ros::NodeHandle("image_proc"), "image_raw", 1.0, scenes);
+  waitFor([&] { return internal.connected() && image_proc.connected(); });
+  std::vector<double> internal_ms;
+  std::vector<double> image_proc_ms;
+  std::vector<double> ratios;
+  for (int i = 0; i < kWarmUp + pairs && ros::ok(); ++i) {
+    const double one_ms = internal.timeOnePair();
+    const double two_ms = image_proc.timeOnePair();
+    if (i < kWarmUp || one_ms < 0.0 || two_ms < 0.0) continue;
+    internal_ms.push_back(one_ms);
+    image_proc_ms.push_back(two_ms);
+    ratios.push_back(one_ms / two_ms);
+  }
+  std::printf(
+      "raw pair to disparity: %zu pairs, rectified in the node median %.1f ms, by image_proc %.1f ms; ratio %.3f\n",
+      ratios.size(), percentile(internal_ms, 0.5), percentile(image_proc_ms, 0.5), percentile(ratios, 0.5));
+}
+
+/// Beside nothing, beside work for half of the cores, and beside nothing again.
+void measureDeadline(Probe& probe, double rate_hz, double deadline_ms, double seconds) {
+  for (const char* phase : {"alone", "beside other work", "alone again"}) {
+    std::atomic<bool> stop{phase != std::string("beside other work")};
+    std::vector<std::thread> others;
+    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency() / 2); ++i) {
+      others.emplace_back([&stop] {
+        for (volatile unsigned turns = 0; !stop; turns = turns + 1) {
+        }
+      });
+    }
+    ros::WallRate rate(rate_hz);
+    for (int i = 0; i < seconds * rate_hz && ros::ok(); ++i, rate.sleep()) probe.publish();
+    stop = true;
+    for (std::thread& other : others) other.join();
+    probe.reportDeadline(phase, deadline_ms);
+  }
 }
 
 /// Feeds the node at its rate meanwhile.
@@ -242,20 +337,29 @@ int main(int argc, char** argv) {
   const int pairs = private_node.param("pairs", 0);
   const bool inside = private_node.param("inside", false);
   const std::string preset = private_node.param<std::string>("preset", "fast");
-  const SyntheticPair pair(cv::Size(private_node.param("width", 320), private_node.param("height", 240)));
-  std::printf("preset %s, %s%s\n", preset.c_str(), inside ? "in one process" : "over TCP",
-              pairs > 0 ? "" : (", input " + std::to_string(static_cast<int>(rate_hz)) + " Hz").c_str());
-  Probe probe(rate_hz, pair);
+  const double deadline_ms = private_node.param("deadline", 0.0);
+  const double seconds = private_node.param("seconds", 10.0);
+  const cv::Size size(private_node.param("width", 320), private_node.param("height", 240));
+  const Scenes scenes{SyntheticPair(size, 1), SyntheticPair(size, 2)};
   ros::AsyncSpinner spinner(2);
   spinner.start();
+  if (private_node.param("rectify", false)) {
+    compareRectification(scenes, pairs);
+    return 0;
+  }
+  std::printf("preset %s, %s%s\n", preset.c_str(), inside ? "in one process" : "over TCP",
+              pairs > 0 ? "" : (", input " + std::to_string(static_cast<int>(rate_hz)) + " Hz").c_str());
+  Probe probe(ros::NodeHandle(), "image_rect", rate_hz, scenes);
   nodelet::Loader loader(false);
   if (inside && !loader.load(ros::names::resolve("disparity"), "fdp_stereo/disparity", {}, {})) return 1;
-  while (ros::ok() && !probe.connected()) ros::WallDuration(0.01).sleep();
+  waitFor([&] { return probe.connected(); });
 
-  if (pairs > 0) {
-    compareWithCore(probe, pair, preset, private_node.param("range", 64), pairs);
+  if (deadline_ms > 0.0) {
+    measureDeadline(probe, rate_hz, deadline_ms, seconds);
+  } else if (pairs > 0) {
+    compareWithCore(probe, scenes[0], preset, private_node.param("range", 64), pairs);
   } else {
-    measureStream(probe, rate_hz, private_node.param("edits", 0), private_node.param("seconds", 10.0));
+    measureStream(probe, rate_hz, private_node.param("edits", 0), seconds);
     spinner.stop();
     probe.report();
   }

@@ -164,8 +164,8 @@ void DisparityNodelet::onInit() {
 void DisparityNodelet::start() {
   ros::NodeHandle& node = getNodeHandle();
   reporter_.setName(getName());
-  StartParams params(getPrivateNodeHandle());
   const auto say = [this](const std::string& message) { warn(message); };
+  StartParams params(getPrivateNodeHandle(), say);
   images_ = readInputImages(params, say);
   input_names_ = {node.resolveName(imageName("left")), node.resolveName("left/camera_info"),
                   node.resolveName(imageName("right")), node.resolveName("right/camera_info")};

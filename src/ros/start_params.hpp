@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <ros/node_handle.h>
 
 #include "fdp_stereo/pipeline_params.hpp"
+#include "text.hpp"
 
 namespace fdp_stereo {
 
@@ -19,7 +22,8 @@ namespace fdp_stereo {
 /// it has them. Remembers their names, so that whoever judges the others knows them.
 class StartParams {
  public:
-  explicit StartParams(const ros::NodeHandle& private_node) : node_(private_node) {
+  using Warn = std::function<void(const std::string&)>;
+  StartParams(const ros::NodeHandle& private_node, Warn warn) : node_(private_node), warn_(std::move(warn)) {
     try {
       given_ = readYaml(node_.param<std::string>("params", ""), "~params");
     } catch (const std::invalid_argument&) {  // which ReconfigureServer reports
@@ -32,7 +36,12 @@ class StartParams {
     for (const NamedText& given : given_) {
       if (given.name == name && !node_.hasParam(name)) set<Value>(given);
     }
-    return node_.param(name, fallback);
+    Value value = fallback;
+    if (node_.hasParam(name) && !node_.getParam(name, value)) {
+      warn_(text("~", name, " is no ", kind<Value>(), "; using '", fallback, "'"));
+      return fallback;
+    }
+    return value;
   }
   const std::vector<std::string>& names() const { return names_; }
 
@@ -49,7 +58,14 @@ class StartParams {
     }
   }
 
+  template <typename Value>
+  static const char* kind() {
+    if (std::is_same_v<Value, std::string>) return "text";
+    return std::is_same_v<Value, bool> ? "true or false" : "number";
+  }
+
   ros::NodeHandle node_;
+  Warn warn_;
   std::vector<NamedText> given_;
   std::vector<std::string> names_;
 };

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images, calibrations and seed messages: whatever they hold, an exception that says why, or a result.
+// Images, calibrations, masks, seeds and what points are made of: whatever they hold, an exception that says why, or a
+// result.
 #include <stdexcept>
 
 #include <dynamic_reconfigure/config_tools.h>
 #include <boost/make_shared.hpp>
 
 #include "conversions.hpp"
+#include "fdp_stereo/io.hpp"
 #include "frame_processor.hpp"
 #include "fuzz_input.hpp"
 #include "point_messages.hpp"
@@ -149,8 +151,12 @@ void fuzzPair(Input& input) {
   if (raw) takeRawCalibration(input, right_info);
   frame.left_info = boost::make_shared<sensor_msgs::CameraInfo>(left_info);
   frame.right_info = boost::make_shared<sensor_msgs::CameraInfo>(right_info);
-  FrameProcessor processor({}, nullptr, nullptr, raw ? InputImages::kRaw : InputImages::kRectified);
-  expectOnlyInvalid([&] { processor.process(frame, settings, {true, true, true, true}); });
+  const bool masked = input.take<std::uint8_t>() % 2 != 0;
+  const sensor_msgs::Image mask = masked ? takeImage(input) : sensor_msgs::Image();
+  const auto masks = [&](cv::Size) { return MaskPair{toMask(decodeImage(mask, "mask")), {}}; };
+  FrameProcessor processor({}, nullptr, masked ? MaskProvider(masks) : nullptr,
+                           raw ? InputImages::kRaw : InputImages::kRectified);
+  expectOnlyInvalid([&] { processor.process(frame, settings, {true, true, true, true, true, true, true}); });
 }
 
 void fuzzSeeds(Input& input) {

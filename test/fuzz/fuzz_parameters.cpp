@@ -7,9 +7,11 @@
 #include <stdexcept>
 
 #include <dynamic_reconfigure/config_tools.h>
+#include <fdp_stereo/PointsConfig.h>
 
 #include "fuzz_input.hpp"
 #include "params_ros.hpp"
+#include "point_params.hpp"
 
 namespace fdp_stereo::fuzz {
 namespace {
@@ -34,6 +36,28 @@ void fuzzConfig(Input& input) {
     }
     settings = applyConfig(config, settings, messages);
     validate(settings);  // throws where a bad set got through: a finding
+  }
+}
+
+/// As dynamic_reconfigure's server does it.
+void fuzzPointsConfig(Input& input) {
+  PointsNodeParams params;
+  PointsConfig config = liveConfig(params);
+  for (int edit = 0; edit < 3 && input.left() > 0; ++edit) {
+    for (double PointsConfig::*member :
+         {&PointsConfig::min_confidence, &PointsConfig::max_depth_error, &PointsConfig::max_depth,
+          &PointsConfig::scan_min_height, &PointsConfig::scan_max_height, &PointsConfig::scan_range_min,
+          &PointsConfig::scan_range_max, &PointsConfig::scan_angle_increment}) {
+      config.*member = input.take<double>();
+    }
+    config.points_decimation = input.take<int>();
+    config.__clamp__();
+    applyLive(config, params, [](const std::string&) {});
+    const RangeScanParams& scan = params.scan;
+    const bool valid = scan.min_height_m < scan.max_height_m && scan.min_range_m < scan.max_range_m &&
+                       scan.increment_rad > 0.0 && params.points.decimation >= 1 && params.points.max_depth >= 0.0 &&
+                       params.points.max_depth_error >= 0.0 && params.points.min_confidence >= 0.0;
+    if (!valid) std::abort();
   }
 }
 
@@ -85,16 +109,15 @@ void fuzzYaml(Input& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fdp_stereo::fuzz::Input input(data, size);
-  switch (input.take<std::uint8_t>() % 3) {
-    case 0:
-      fdp_stereo::fuzz::fuzzConfig(input);
-      break;
-    case 1:
-      fdp_stereo::fuzz::fuzzRosparam(input);
-      break;
-    default:
-      fdp_stereo::fuzz::fuzzYaml(input);
-      break;
+  const auto kind = input.take<std::uint8_t>();
+  if (kind / 16 == 14) {
+    fdp_stereo::fuzz::fuzzPointsConfig(input);
+  } else if (kind % 3 == 0) {
+    fdp_stereo::fuzz::fuzzConfig(input);
+  } else if (kind % 3 == 1) {
+    fdp_stereo::fuzz::fuzzRosparam(input);
+  } else {
+    fdp_stereo::fuzz::fuzzYaml(input);
   }
   return 0;
 }

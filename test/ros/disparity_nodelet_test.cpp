@@ -303,7 +303,30 @@ TEST(DisparityNodelet, BadParametersOfTheStartAreSaid) {
   EXPECT_NE(log.wait({"~image_transport", "no_such", "using raw"}), "");
   EXPECT_NE(log.wait({"~approximate_sync_tolerance", "using 0"}), "");
   EXPECT_NE(log.wait({"~queue_size = -5", "using 1"}), "");
+  EXPECT_NE(log.wait({"~diagnostic_period", "no number"}), "");
   EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, ParametersOfAnotherTypeAreSaidAndReplaced) {
+  LogLines log;
+  NodeletGraph graph("/types", {{"queue_size", std::string("five")},
+                                {"approximate_sync", 3.5},
+                                {"nearest", std::string("0.5 m")},
+                                {"left_mask", 7},
+                                {"seeds_fixed_frame", true}});
+  for (const char* name : {"queue_size", "approximate_sync", "nearest", "left_mask", "seeds_fixed_frame"}) {
+    EXPECT_NE(log.wait({"~" + std::string(name) + " is no "}), "") << name;
+  }
+  EXPECT_TRUE(graph.process(goodMessages()));
+}
+
+TEST(DisparityNodelet, ANearestDistanceThatCannotBeIsSaidAndTheRangeStays) {
+  for (const double nearest : {-1.0, 1e-9, std::nan("")}) {
+    LogLines log;
+    NodeletGraph graph("/nearest", {{"nearest", nearest}});
+    EXPECT_TRUE(graph.process(goodMessages())) << nearest;
+    EXPECT_NE(log.wait({"nearest distance"}), "") << nearest;
+  }
 }
 
 /// A calibration in another unit, and what the range can see: once each, however many pairs come.
