@@ -68,6 +68,7 @@ class PointsNodelet : public nodelet::Nodelet {
 
   mutable std::mutex params_mutex_;
   PointsNodeParams params_;
+  boost::recursive_mutex reconfigure_mutex_;  ///< of the server
   std::unique_ptr<dynamic_reconfigure::Server<PointsConfig>> reconfigure_;
   PointTopics topics_;
   std::mutex connect_mutex_;  ///< held over advertise: a subscriber may come before the publisher is stored
@@ -132,7 +133,8 @@ void PointsNodelet::start() {
 /// From now on by dynamic_reconfigure, beginning with what was read.
 void PointsNodelet::reconfigure() {
   const PointsConfig initial = liveConfig(params_);
-  reconfigure_ = std::make_unique<dynamic_reconfigure::Server<PointsConfig>>(getPrivateNodeHandle());
+  reconfigure_ =
+      std::make_unique<dynamic_reconfigure::Server<PointsConfig>>(reconfigure_mutex_, getPrivateNodeHandle());
   reconfigure_->updateConfig(initial);
   reconfigure_->setCallback([this](PointsConfig& config, std::uint32_t) {
     const std::lock_guard<std::mutex> lock(params_mutex_);

@@ -94,8 +94,8 @@ TEST(Pipeline, DoesNotAnswerNoise) {
     for (const double noise : {1.0, 3.0}) {
       const SeenViews views = seen(cv::Mat(120, 200, CV_32FC1, cv::Scalar(90)), noise);
       const PipelineResult result = Pipeline(params).run(views.left, views.right);
-      EXPECT_LE(answered(result.disparity), 0.03 * views.left.size().area()) << name << ", noise " << noise;
-      EXPECT_LE(cv::mean(result.confidence)[0], 0.03) << name << ", noise " << noise;
+      EXPECT_LE(answered(result.disparity), 0.01 * views.left.size().area()) << name << ", noise " << noise;
+      EXPECT_LE(cv::mean(result.confidence)[0], 0.01) << name << ", noise " << noise;
     }
   }
 }

@@ -15,7 +15,7 @@ constexpr int kRowStep = 2;           ///< half of the rows tell enough of a reg
 constexpr int kSteps = 16;            ///< per pixel and grey level
 
 /// More is not by chance, which chooses the best of many disparities: the smaller a region, the better it can.
-double leastCorrelation(std::int64_t count) { return 0.25 + 1.5 / std::sqrt(static_cast<double>(count)); }
+double leastCorrelation(std::int64_t count) { return 0.25 + 2.5 / std::sqrt(static_cast<double>(count)); }
 
 /// Sums of products of the fine structure of both views.
 struct Agreement {
