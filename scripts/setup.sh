@@ -37,6 +37,9 @@ for argument in "$@"; do
   esac
 done
 
+# ROS asks for localhost; a root without /etc/hosts does not know it.
+getent hosts localhost >/dev/null || packages+=(libnss-myhostname)
+
 missing=()
 for package in "${packages[@]}"; do
   status="$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)"
