@@ -4,6 +4,7 @@
 #include "fdp_stereo/io.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,8 @@ TEST_P(PipelineKernel, GivesTheSameBits) {
 }
 
 TEST(Pipeline, RefusesAnUnknownInstructionSet) {
+  const char* const wanted = std::getenv("FDP_STEREO_SIMD");
+  const std::string before = wanted == nullptr ? "" : wanted;
   setenv("FDP_STEREO_SIMD", "avx", 1);
   std::string message;
   try {
@@ -79,7 +82,7 @@ TEST(Pipeline, RefusesAnUnknownInstructionSet) {
   } catch (const std::invalid_argument& error) {
     message = error.what();
   }
-  unsetenv("FDP_STEREO_SIMD");
+  before.empty() ? unsetenv("FDP_STEREO_SIMD") : setenv("FDP_STEREO_SIMD", before.c_str(), 1);
   EXPECT_NE(message.find("FDP_STEREO_SIMD is 'avx'"), std::string::npos) << message;
   EXPECT_NE(message.find("baseline, avx2 or avx512"), std::string::npos) << message;
 }
