@@ -116,6 +116,7 @@ void storePoint(const PointView& view, cv::Point pixel, float* out) {
 PointView decodePointFrame(const PointFrame& frame, const PointParams& params, const PointTopics& topics,
                            std::vector<std::string>& warnings) {
   PointView view;
+  view.frame = frame;
   view.header = frame.disparity->header;
   view.depth_scale = checkedDepthScale(*frame.disparity, topics.disparity);
   const float largest = frame.disparity->max_disparity;

@@ -34,6 +34,7 @@ struct PointTopics {
 
 /// A frame as the outputs need it. Maps have the size of the disparity; empty where the frame has none.
 struct PointView {
+  PointFrame frame;  ///< whose messages hold the pixels of the maps
   std_msgs::Header header;
   PinholeCamera camera;
   double depth_scale = 0.0;  ///< px m: depth = depth_scale / disparity
