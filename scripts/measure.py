@@ -123,6 +123,7 @@ def measure_speed(measured, options):
 FOCAL_PX, BASELINE_M, SIZE, RANGE_PX = 500.0, 0.1, (640, 480), 64
 DISTANCES_M = (1.0, 2.0, 5.0, 10.0)
 SLOPE = math.tan(math.radians(15.0))  # of the plane, about the vertical: its disparity takes all fractions of a pixel
+NOISE = 2.0  # grey levels, of the sensor
 FINER = 2  # samples per pixel and direction
 
 
@@ -178,12 +179,12 @@ def own_disparity(preset, left, right):
 
 def measure_metres(measured, options):
     """Root mean square error of the depth of a tilted plane that both cameras see, with the noise of a sensor."""
-    measured["metres"] = {"commit": commit(), "noise": 2.0, "rms_m": {}}
+    measured["metres"] = {"commit": commit(), "noise": NOISE, "rms_m": {}}
     for distance in DISTANCES_M:
         random = np.random.default_rng(1)
         texture = fractal(random, 2048)
         (left, z), (right, _) = (plane_view(texture, distance, x_m) for x_m in (0.0, BASELINE_M))
-        left, right = (np.clip(np.rint(view + random.normal(0.0, 2.0, view.shape)), 0, 255).astype(np.uint8)
+        left, right = (np.clip(np.rint(view + random.normal(0.0, NOISE, view.shape)), 0, 255).astype(np.uint8)
                        for view in (left, right))
         seen = np.arange(SIZE[0]) > RANGE_PX
         entry = {}

@@ -39,11 +39,6 @@ SCENES = (
 )
 
 
-def load(side):
-    image = cv2.imread(os.path.join(SAMPLE, side + ".png"), cv2.IMREAD_GRAYSCALE)
-    return image
-
-
 class Node:
     """stereo.launch, its inputs, and what it answers."""
 
@@ -136,7 +131,7 @@ def blinking(before, now):
 
 
 def record(node):
-    views = {side: load(side) for side in ("left", "right")}
+    views = {side: cv2.imread(os.path.join(SAMPLE, side + ".png"), cv2.IMREAD_GRAYSCALE) for side in ("left", "right")}
     random = np.random.default_rng(1)
     frames = []
     for caption, name, values, count in SCENES:

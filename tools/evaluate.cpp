@@ -81,8 +81,9 @@ std::vector<Method> chooseMethods(const Options& options) {
     methods.push_back(variantMethod(variant, options.pipeline, options.seeds));
   }
   if (options.peers) {
-    for (Method& peer : peerMethods(options.pipeline.fill, options.pipeline.threads.value_or(0)))
-      methods.push_back(std::move(peer));
+    const int threads = options.pipeline.threads.value_or(0);
+    cv::setNumThreads(threads > 0 ? threads : cv::getNumberOfCPUs());  // once: another number ends those that work
+    for (Method& peer : peerMethods(options.pipeline.fill)) methods.push_back(std::move(peer));
   }
   std::set<std::string> names;
   for (const Method& method : methods) {

@@ -14,8 +14,10 @@ namespace fdp_stereo {
 constexpr char kOutOfMemory[] =
     "out of memory; search fewer disparities, use smaller images (scale), or give the program more";
 
-/// What the exception that is being handled (there must be one) says, in plain words where memory ran out.
-inline std::string describeCurrentException() {
+/// What the exception that is being handled says, in plain words where memory ran out; needs none itself. Valid as long
+/// as the exception.
+inline const char* describeCurrentException() {
+  if (!std::current_exception()) return "without an exception";
   try {
     throw;
   } catch (const std::bad_alloc&) {
@@ -35,7 +37,7 @@ inline void terminateWithMessage(const std::string& program) {
   static std::string name;
   name = program;
   std::set_terminate([] {
-    std::fprintf(stderr, "%s: ended: %s\n", name.c_str(), describeCurrentException().c_str());
+    std::fprintf(stderr, "%s: ended: %s\n", name.c_str(), describeCurrentException());
     std::_Exit(EXIT_FAILURE);
   });
 }

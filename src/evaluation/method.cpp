@@ -9,13 +9,9 @@
 namespace fdp_stereo {
 namespace {
 
-/// With threads of OpenCV, 0 = all cores.
-PipelineResult runPeer(Peer peer, bool fill, int threads, const Scene& scene) {
+PipelineResult runPeer(Peer peer, bool fill, const Scene& scene) {
   PeerMatcher matcher(peer, scene);
-  const int before = cv::getNumThreads();
-  cv::setNumThreads(threads > 0 ? threads : cv::getNumberOfCPUs());
   matcher.compute();
-  cv::setNumThreads(before);
   PipelineResult result;
   result.disparity = matcher.disparity();
   if (fill) fillHoles(result.disparity);
@@ -66,13 +62,13 @@ Method variantMethod(const std::string& text, const PipelineOptions& options, co
   return pipelineMethod(text.substr(0, equals), parts[0], extended, seeds);
 }
 
-std::vector<Method> peerMethods(bool fill, int threads) {
+std::vector<Method> peerMethods(bool fill) {
   std::vector<Method> methods;
   for (const Peer peer : {Peer::kSgbmHh, Peer::kSgbm3Way, Peer::kBm}) {
     const std::string settings =
         std::string("OpenCV ") + CV_VERSION + " " + peerName(peer) + (fill ? " filled\n" : "\n");
-    methods.push_back({peerName(peer), settings,
-                       [peer, fill, threads](const Scene& scene) { return runPeer(peer, fill, threads, scene); }});
+    methods.push_back(
+        {peerName(peer), settings, [peer, fill](const Scene& scene) { return runPeer(peer, fill, scene); }});
   }
   return methods;
 }

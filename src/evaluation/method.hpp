@@ -28,6 +28,6 @@ Method pipelineMethod(const std::string& name, const std::string& preset, const 
 Method variantMethod(const std::string& text, const PipelineOptions& options, const SeedSimulation& seeds);
 
 /// OpenCV's matchers as PeerMatcher sets them.
-std::vector<Method> peerMethods(bool fill, int threads);
+std::vector<Method> peerMethods(bool fill);
 
 }  // namespace fdp_stereo

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# For tests of launch files beside a recording that plays, sourced as: launched.sh DEVEL PORT.
+# For tests of launch files beside a recording that plays, sourced as: launched.sh DEVEL.
 # shellcheck source=test/ros/own_master.sh
-. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1" "$2"
+. "$(dirname "${BASH_SOURCE[0]}")/own_master.sh" "$1"
 bag="$1/share/fdp_stereo/sample/motorcycle.bag"
 played="" # empty where the launch file plays by itself
 

@@ -5,7 +5,7 @@
 # migration_test.sh DEVEL: the launch file and the parameters of stereo_image_proc, moved by docs/migration.md alone, run
 # without a warning; parameters that are not moved are told in one.
 # shellcheck source=test/ros/launched.sh
-. "$(dirname "${BASH_SOURCE[0]}")/launched.sh" "$1" 11421
+. "$(dirname "${BASH_SOURCE[0]}")/launched.sh" "$1"
 page="$(dirname "${BASH_SOURCE[0]}")/../../docs/migration.md"
 
 # block LANGUAGE NUMBER: of the page's blocks in this language, the first is 1.

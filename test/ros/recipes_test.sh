@@ -4,7 +4,7 @@
 #
 # recipes_test.sh DEVEL: the recipes whose packages are here, with the sample recording. Each must run without a warning.
 # shellcheck source=test/ros/launched.sh
-. "$(dirname "${BASH_SOURCE[0]}")/launched.sh" "$1" 11422
+. "$(dirname "${BASH_SOURCE[0]}")/launched.sh" "$1"
 recipes="$(cd "$(dirname "${BASH_SOURCE[0]}")/../../launch/recipes" && pwd)"
 start_master
 

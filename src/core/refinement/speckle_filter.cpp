@@ -6,6 +6,7 @@
 #include "refinement/regions.hpp"
 
 namespace fdp_stereo {
+
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
   requireMap(disparity, "speckle filter");
   if (params.max_size <= 0) return;
