@@ -183,7 +183,7 @@ def write_header(path, model):
              "// Written by benchmark/fit_confidence.py (docs/confidence.md).", "#pragma once", "",
              '#include "simd/confidence_kernels.hpp"', "", "namespace fdp_stereo {", "", "// clang-format off",
              "/// bias; weights of margin, left-right distance, roughness near and wide, margin around, texture, contrast,",
-             "/// distance to the border, disparity, spread, offset; shares in logit and log sigma",
+             "/// distance to the border, disparity, spread and offset near and wide, share known; shares in logit and log sigma",
              "constexpr ConfidenceModel kConfidenceModel = {{"]
     for j in range(UNITS):
         weights = ", ".join(number(w) for w in model["weights"][:, j])

@@ -59,8 +59,9 @@ make_root() {
   touch "$root/made"
 }
 
+# The times of the files are those here: what a run before built from others would pass for up to date.
 copy_sources() {
-  rm -rf "$root/fdp_stereo"
+  rm -rf "$root/fdp_stereo" "$root/build"
   mkdir "$root/fdp_stereo"
   git -C "$FDP_STEREO_ROOT" ls-files -co --exclude-standard -z |
     tar -C "$FDP_STEREO_ROOT" --null --ignore-failed-read -T - -cf - 2>/dev/null | tar -C "$root/fdp_stereo" -xf -

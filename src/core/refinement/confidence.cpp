@@ -16,8 +16,8 @@
 namespace fdp_stereo {
 namespace {
 
-constexpr int kNear = 2, kWide = 5;  // px, radii of the windows
-constexpr int kBandRows = 48;        // whose maps and sums stay in the cache
+constexpr int kRoughnessSide = 5;              // px, of the window around every pixel
+constexpr int kNearCells = 1, kWideCells = 5;  // radii of the windows of cells
 
 /// Contrast from pixel to pixel, grey levels: the noise, where there is little texture (Immerkaer 1996, with a median).
 float contrastOf(const cv::Mat& guide) {
@@ -51,84 +51,122 @@ float stepsPerPx(DisparityRange range) {
   return steps;
 }
 
-/// Confidence and sigma of bands of rows. One per thread.
-class BandJudge {
+float bounded(double value, double half) { return static_cast<float>(value / (value + half)); }
+
+/// What windows of cells tell, one entry per cell: far cheaper than windows around every pixel, and as good.
+class Cells {
  public:
-  BandJudge(const QualityInput& input, float contrast)
+  Cells(const QualityInput& input, const ConfidenceKernels& kernels)
+      : input_(input), lowest_(static_cast<float>(input.search.min)), steps_(stepsPerPx(input.search)) {
+    const cv::Size size(cellsOf(input.disparity.cols), cellsOf(input.disparity.rows));
+    for (cv::Mat& sum : sums_) sum.create(size, CV_64FC1);
+    for (cv::Mat& window : windows_) window.create(size, CV_32FC1);
+    parallelFor(size.height, [&](int i) { kernels.fillCells(rowsOf(i), input.disparity.cols); });
+    look(kNearCells, kNearSpread, kNearMean);
+    lookAtCosts();
+    look(kWideCells, kWideSpread, kWideMean);
+  }
+
+  /// One entry per cell of the row of cells in which row y is.
+  const float* window(int which, int y) const { return windows_[which].ptr<float>(y / kConfidenceCell); }
+
+ private:
+  static int cellsOf(int pixels) { return (pixels + kConfidenceCell - 1) / kConfidenceCell; }
+
+  ConfidenceCellRows rowsOf(int i) {
+    ConfidenceCellRows rows{};
+    for (int k = 0; k < kConfidenceCell; ++k) {
+      const int y = std::min(i * kConfidenceCell + k, input_.disparity.rows - 1);
+      rows.disparity[k] = input_.disparity.ptr<float>(y);
+      rows.margin[k] = input_.margin.ptr<float>(y);
+      rows.roughness[k] = input_.roughness.ptr<std::uint8_t>(y);
+      rows.grey[k] = input_.guide.ptr<std::uint8_t>(y);
+    }
+    rows.lowest = lowest_;
+    rows.steps = steps_;
+    for (int sum = 0; sum < kConfidenceSums; ++sum) rows.sums[sum] = sums_[sum].ptr<double>(i);
+    return rows;
+  }
+
+  static int pixelsOf(int radius) { return (2 * radius + 1) * (2 * radius + 1) * kConfidenceCell * kConfidenceCell; }
+
+  /// Exact: the sums are whole numbers.
+  cv::Mat around(ConfidenceSum which, int radius) const {
+    cv::Mat result;
+    cv::boxFilter(sums_[which], result, CV_64F, {2 * radius + 1, 2 * radius + 1}, {-1, -1}, false,
+                  cv::BORDER_REPLICATE);
+    return result;
+  }
+
+  /// Where the surface is, and how far it spreads.
+  void look(int radius, ConfidenceWindow spread, ConfidenceWindow mean) {
+    constexpr double kHalfPx = 0.5;
+    const cv::Mat known = around(kKnown, radius), steps = around(kSteps, radius), squares = around(kSquares, radius);
+    for (int i = 0; i < known.rows; ++i) {
+      for (int j = 0; j < known.cols; ++j) {
+        const double count = known.at<double>(i, j), share = 1.0 / std::max(count, 1.0);
+        const double middle = steps.at<double>(i, j) * share;
+        const double variance = std::max(squares.at<double>(i, j) * share - middle * middle, 0.0);
+        windows_[spread].at<float>(i, j) = bounded(std::sqrt(variance) / steps_, kHalfPx);
+        windows_[mean].at<float>(i, j) = static_cast<float>(middle / steps_ + lowest_);
+        windows_[kShare].at<float>(i, j) = static_cast<float>(count / pixelsOf(radius));
+      }
+    }
+  }
+
+  void lookAtCosts() {
+    constexpr double kHalfRoughness = 0.1 * 63.0, kHalfMargin = 0.05 * kConfidenceMarginSteps, kHalfTexture = 8.0;
+    const auto look_at = [&](ConfidenceSum which, double half, ConfidenceWindow window) {
+      const cv::Mat sums = around(which, kNearCells);
+      for (int i = 0; i < sums.rows; ++i) {
+        for (int j = 0; j < sums.cols; ++j) {
+          windows_[window].at<float>(i, j) = bounded(sums.at<double>(i, j), half * pixelsOf(kNearCells));
+        }
+      }
+    };
+    look_at(kRoughness, kHalfRoughness, kRough);
+    look_at(kMargin, kHalfMargin, kMargins);
+    look_at(kTexture, kHalfTexture, kTextured);
+  }
+
+  const QualityInput& input_;
+  float lowest_, steps_;
+  cv::Mat sums_[kConfidenceSums];        ///< by cell
+  cv::Mat windows_[kConfidenceWindows];  ///< likewise
+};
+
+/// Confidence and sigma of rows. One per thread.
+class RowJudge {
+ public:
+  RowJudge(const QualityInput& input, const Cells& cells, const ConfidenceKernels& kernels, float contrast)
       : input_(input),
-        kernels_(FDP_STEREO_SELECT(confidenceKernels)),
+        cells_(cells),
+        kernels_(kernels),
         contrast_(contrast),
-        steps_(stepsPerPx(input.search)),
         stride_((input.disparity.cols + kConfidenceBlock - 1) / kConfidenceBlock * kConfidenceBlock),
         measures_(static_cast<std::size_t>(stride_) * kConfidenceMeasures) {}
 
-  void judge(const cv::Range& rows, DisparityQuality& quality) {
-    fillMaps(rows);
-    sumMaps(rows);
-    for (int y = rows.start; y < rows.end; ++y) {
-      fillMeasures(y, y - rows.start);
-      writeRow(y, quality);
-    }
-  }
-
- private:
-  /// Of the rows and of those that the windows reach beside them, the outermost ones of the image repeated.
-  void fillMaps(const cv::Range& rows) {
-    const cv::Size size(input_.disparity.cols, rows.size() + 2 * kWide);
-    margin_.create(size, CV_16UC1);
-    texture_.create(size, CV_8UC1);
-    known_.create(size, CV_8UC1);
-    disparity_.create(size, CV_16UC1);
-    square_.create(size, CV_32SC1);
-    for (int i = 0; i < size.height; ++i) {
-      const int y = std::min(std::max(rows.start + i - kWide, 0), input_.disparity.rows - 1);
-      kernels_.fillMaps(
-          {input_.margin.ptr<float>(y), input_.disparity.ptr<float>(y), input_.guide.ptr<std::uint8_t>(y),
-           static_cast<float>(input_.search.min), steps_, margin_.ptr<std::uint16_t>(i), texture_.ptr<std::uint8_t>(i),
-           known_.ptr<std::uint8_t>(i), disparity_.ptr<std::uint16_t>(i), square_.ptr<std::int32_t>(i)},
-          size.width);
-    }
-  }
-
-  void sumMaps(const cv::Range& rows) {
-    const cv::Range own(kWide, kWide + rows.size());
-    const auto sum = [](const cv::Mat& map, int radius, cv::Mat& sums) {
-      const int side = 2 * radius + 1;
-      cv::boxFilter(map, sums, CV_32S, {side, side}, {-1, -1}, false, cv::BORDER_REPLICATE);
-    };
-    sum(input_.roughness.rowRange(rows), kNear, roughness_near_);
-    sum(input_.roughness.rowRange(rows), kWide, roughness_wide_);
-    sum(margin_.rowRange(own), kNear, margins_);
-    sum(texture_.rowRange(own), kNear, textures_);
-    sum(known_.rowRange(own), kWide, knowns_);
-    sum(disparity_.rowRange(own), kWide, disparities_);
-    sum(square_.rowRange(own), kWide, squares_);
-  }
-
-  void fillMeasures(int y, int i) {
-    kernels_.fillMeasures({input_.margin.ptr<float>(y), input_.disparity.ptr<float>(y),
-                           input_.disparity_right.empty() ? nullptr : input_.disparity_right.ptr<float>(y),
-                           roughness_near_.ptr<int>(i), roughness_wide_.ptr<int>(i), margins_.ptr<int>(i),
-                           textures_.ptr<int>(i), knowns_.ptr<int>(i), disparities_.ptr<int>(i), squares_.ptr<int>(i),
-                           static_cast<float>(input_.search.min), steps_, contrast_, measures_.data(), stride_},
-                          input_.disparity.cols);
-  }
-
-  void writeRow(int y, DisparityQuality& quality) const {
+  void judge(int y, const int* roughness, DisparityQuality& quality) {
     const int width = input_.disparity.cols;
-    kernels_.apply(kConfidenceModel, measures_.data(), stride_, input_.disparity.ptr<float>(y), width,
-                   quality.confidence.ptr<float>(y), quality.sigma.ptr<float>(y));
+    const auto* disparity = input_.disparity.ptr<float>(y);
+    ConfidenceRow row{input_.margin.ptr<float>(y),           disparity, nullptr,          roughness, {},
+                      static_cast<float>(input_.search.min), contrast_, measures_.data(), stride_};
+    if (!input_.disparity_right.empty()) row.right = input_.disparity_right.ptr<float>(y);
+    for (int i = 0; i < kConfidenceWindows; ++i) row.windows[i] = cells_.window(i, y);
+    kernels_.fillMeasures(row, width);
+    kernels_.apply(kConfidenceModel, measures_.data(), stride_, disparity, width, quality.confidence.ptr<float>(y),
+                   quality.sigma.ptr<float>(y));
     for (std::size_t i = 0; i < quality.measures.size(); ++i) {
       std::copy_n(measures_.data() + i * stride_, width, quality.measures[i].ptr<float>(y));
     }
   }
 
+ private:
   const QualityInput& input_;
+  const Cells& cells_;
   const ConfidenceKernels& kernels_;
-  float contrast_, steps_;
+  float contrast_;
   int stride_;
-  cv::Mat margin_, texture_, known_, disparity_, square_;
-  cv::Mat roughness_near_, roughness_wide_, margins_, textures_, knowns_, disparities_, squares_;
   std::vector<float> measures_;
 };
 
@@ -150,12 +188,14 @@ DisparityQuality judgeDisparity(const QualityInput& input, bool keep_measures) {
   if (keep_measures) {
     for (int i = 0; i < kConfidenceMeasures; ++i) quality.measures.emplace_back(size, CV_32FC1);
   }
+  const ConfidenceKernels& kernels = FDP_STEREO_SELECT(confidenceKernels);
+  const Cells cells(input, kernels);
+  cv::Mat roughness;
+  cv::boxFilter(input.roughness, roughness, CV_32S, {kRoughnessSide, kRoughnessSide}, {-1, -1}, false,
+                cv::BORDER_REPLICATE);
   const float contrast = contrastMeasure(input.guide);
-  const auto makeJudge = [&] { return BandJudge(input, contrast); };
-  const auto judgeBand = [&](int band, BandJudge& judge) {
-    judge.judge({band * kBandRows, std::min((band + 1) * kBandRows, size.height)}, quality);
-  };
-  parallelFor((size.height + kBandRows - 1) / kBandRows, makeJudge, judgeBand, 1);
+  const auto makeJudge = [&] { return RowJudge(input, cells, kernels, contrast); };
+  parallelFor(size.height, makeJudge, [&](int y, RowJudge& judge) { judge.judge(y, roughness.ptr<int>(y), quality); });
   return quality;
 }
 

@@ -18,82 +18,122 @@ inline float larger(float a, float b) { return a > b ? a : b; }
 inline float smaller(float a, float b) { return a < b ? a : b; }
 inline float bounded(float value, float half) { return value / (value + half); }
 
-void fillMaps(const ConfidenceMapRow& row, int width) {
-  const float* __restrict margin = row.margin;
-  const float* __restrict disparity = row.disparity;
-  std::uint16_t* __restrict to_margin = row.to_margin;
-  std::uint16_t* __restrict to_steps = row.to_steps;
-  std::int32_t* __restrict to_squares = row.to_squares;
-  std::uint8_t* __restrict to_known = row.to_known;
-  const float lowest = row.lowest, steps_per_px = row.steps;
+static_assert(kConfidenceCell == 4, "fillCells adds four columns");
+
+/// Sums of the columns of a block over the rows.
+struct ColumnSums {
+  std::int32_t of[kConfidenceSums][kConfidenceBlock] = {};
+
+  void addDisparities(const float* __restrict disparity, float lowest, float steps_per_px, int count) {
 #pragma omp simd
-  for (int x = 0; x < width; ++x) {
-    const float d = disparity[x];
-    const bool known = d == d;
-    const float steps = (d - lowest) * steps_per_px + 0.5F;
-    const auto whole = static_cast<std::int32_t>(known ? smaller(larger(steps, 0.0F), kConfidenceLargestSteps) : 0.0F);
-    to_steps[x] = static_cast<std::uint16_t>(whole);
-    to_squares[x] = whole * whole;
-    to_known[x] = known ? 1 : 0;
-    to_margin[x] = static_cast<std::uint16_t>(
-        static_cast<std::int32_t>(smaller(larger(margin[x], 0.0F) * kConfidenceMarginSteps, 65535.0F)));
+    for (int x = 0; x < count; ++x) {
+      const float d = disparity[x];
+      const bool has = d == d;
+      const float wanted = (d - lowest) * steps_per_px + 0.5F;
+      const auto whole = static_cast<std::int32_t>(has ? smaller(larger(wanted, 0.0F), kConfidenceLargestSteps) : 0.0F);
+      of[kKnown][x] += has ? 1 : 0;
+      of[kSteps][x] += whole;
+      of[kSquares][x] += whole * whole;
+    }
   }
-  const std::uint8_t* __restrict grey = row.grey;
-  std::uint8_t* __restrict to_texture = row.to_texture;
-  to_texture[0] = to_texture[width - 1] = 0;
-  for (int x = 1; x < width - 1; ++x) {
-    const std::uint8_t a = grey[x - 1], b = grey[x + 1];
-    to_texture[x] = static_cast<std::uint8_t>(a > b ? a - b : b - a);
+
+  void addMargins(const float* __restrict margin, const std::uint8_t* __restrict roughness, int count) {
+#pragma omp simd
+    for (int x = 0; x < count; ++x) {
+      of[kMargin][x] += static_cast<std::int32_t>(smaller(larger(margin[x], 0.0F) * kConfidenceMarginSteps, 65535.0F));
+      of[kRoughness][x] += roughness[x];
+    }
+  }
+
+  /// From `first` on, which has a left neighbour.
+  void addTexture(const std::uint8_t* __restrict grey, int first, int count) {
+#pragma omp simd
+    for (int x = first; x < count; ++x) {
+      const std::int32_t step = grey[x + 1] - grey[x - 1];
+      of[kTexture][x] += step < 0 ? -step : step;
+    }
+  }
+
+  /// Repeats the last of `count` columns in the rest of its cell.
+  void fillUp(int count) {
+    for (auto& sums : of) {
+      for (int x = count; x % kConfidenceCell != 0; ++x) sums[x] = sums[count - 1];
+    }
+  }
+};
+
+void fillCells(const ConfidenceCellRows& rows, int width) {
+  for (int start = 0; start < width; start += kConfidenceBlock) {
+    const int count = width - start < kConfidenceBlock ? width - start : kConfidenceBlock;
+    ColumnSums columns;
+    for (int k = 0; k < kConfidenceCell; ++k) {
+      columns.addDisparities(rows.disparity[k] + start, rows.lowest, rows.steps, count);
+      columns.addMargins(rows.margin[k] + start, rows.roughness[k] + start, count);
+      columns.addTexture(rows.grey[k] + start, start == 0 ? 1 : 0, start + count == width ? count - 1 : count);
+    }
+    columns.fillUp(count);
+    for (int sum = 0; sum < kConfidenceSums; ++sum) {
+      double* __restrict cells = rows.sums[sum] + start / kConfidenceCell;
+      for (int i = 0; i * kConfidenceCell < count; ++i) {
+        const std::int32_t* four = columns.of[sum] + i * kConfidenceCell;
+        cells[i] = four[0] + four[1] + four[2] + four[3];
+      }
+    }
   }
 }
 
-constexpr float kNearArea = 25.0F, kWideArea = 121.0F;  // pixels
+/// The value of its cell for every pixel.
+void spreadCells(const float* __restrict cells, int width, float* __restrict pixels) {
+  for (int cell = 0; cell * kConfidenceCell < width; ++cell) {
+    for (int k = 0; k < kConfidenceCell; ++k) pixels[cell * kConfidenceCell + k] = cells[cell];
+  }
+}
 
-void fillCosts(const ConfidenceSumRow& row, int width) {
-  constexpr float kHalfMargin = 0.05F, kHalfRoughness = 0.1F * 63.0F, kHalfTexture = 8.0F;
-  const ConfidenceSumRow r = row;
+void fillPixels(const ConfidenceRow& row, int width) {
+  constexpr float kHalfMargin = 0.05F, kHalfRoughness = 0.1F * 63.0F, kNearArea = 25.0F;
+  constexpr float kHalfDisparityPx = 16.0F, kFarPx = 100.0F;
+  const ConfidenceRow r = row;
   float* __restrict margin = r.measures;
-  float* __restrict rough_near = r.measures + 2 * r.stride;
-  float* __restrict rough_wide = r.measures + 3 * r.stride;
-  float* __restrict margins = r.measures + 4 * r.stride;
-  float* __restrict texture = r.measures + 5 * r.stride;
+  float* __restrict rough = r.measures + 2 * r.stride;
   float* __restrict contrast = r.measures + 6 * r.stride;
-#pragma omp simd
-  for (int x = 0; x < width; ++x) {
-    margin[x] = bounded(larger(r.margin[x], 0.0F), kHalfMargin);
-    rough_near[x] = bounded(static_cast<float>(r.roughness_near[x]), kHalfRoughness * kNearArea);
-    rough_wide[x] = bounded(static_cast<float>(r.roughness_wide[x]), kHalfRoughness * kWideArea);
-    margins[x] = bounded(static_cast<float>(r.margins[x]), kHalfMargin * kConfidenceMarginSteps * kNearArea);
-    texture[x] = bounded(static_cast<float>(r.texture[x]), kHalfTexture * kNearArea);
-    contrast[x] = r.contrast;
-  }
-}
-
-void fillSurface(const ConfidenceSumRow& row, int width) {
-  constexpr float kHalfDisparityPx = 16.0F, kFarPx = 100.0F, kHalfPx = 0.5F;
-  const ConfidenceSumRow r = row;
   float* __restrict border = r.measures + 7 * r.stride;
   float* __restrict disparity = r.measures + 8 * r.stride;
-  float* __restrict spread = r.measures + 9 * r.stride;
-  float* __restrict offset = r.measures + 10 * r.stride;
-  const float px = 1.0F / r.steps_per_px;
 #pragma omp simd
   for (int x = 0; x < width; ++x) {
     const float given = r.disparity[x];
     const float d = given == given ? given : r.lowest;
+    margin[x] = bounded(larger(r.margin[x], 0.0F), kHalfMargin);
+    rough[x] = bounded(static_cast<float>(r.roughness_sum[x]), kHalfRoughness * kNearArea);
+    contrast[x] = r.contrast;
     border[x] = smaller(larger(static_cast<float>(x) - d, 0.0F), kFarPx) * (1.0F / kFarPx);
     disparity[x] = bounded(larger(d, 0.0F), kHalfDisparityPx);
-    const float share = 1.0F / larger(static_cast<float>(r.known[x]), 1.0F);
-    const float mean = static_cast<float>(r.steps[x]) * share;
-    const float variance = larger(static_cast<float>(r.squares[x]) * share - mean * mean, 0.0F);
-    spread[x] = bounded(__builtin_sqrtf(variance) * px, kHalfPx);
-    const float e = d - r.lowest - mean * px;
+  }
+}
+
+/// Of the disparities from the mean around, which `offset` holds before.
+void subtractMeans(const ConfidenceRow& row, int width, float* __restrict offset) {
+  constexpr float kHalfPx = 0.5F;
+  const float* __restrict disparity = row.disparity;
+  const float lowest = row.lowest;
+#pragma omp simd
+  for (int x = 0; x < width; ++x) {
+    const float given = disparity[x];
+    const float e = (given == given ? given : lowest) - offset[x];
     offset[x] = e / ((e < 0.0F ? -e : e) + kHalfPx);
   }
 }
 
+void fillWindows(const ConfidenceRow& row, int width) {
+  constexpr int kMeasureOf[kConfidenceWindows] = {3, 4, 5, 9, 10, 11, 12, 13};
+  for (int i = 0; i < kConfidenceWindows; ++i) {
+    spreadCells(row.windows[i], width, row.measures + kMeasureOf[i] * row.stride);
+  }
+  subtractMeans(row, width, row.measures + kMeasureOf[kNearMean] * row.stride);
+  subtractMeans(row, width, row.measures + kMeasureOf[kWideMean] * row.stride);
+}
+
 /// Of the views' disparities, at most 2 px, as a share of that; 0 without a right view.
-void fillDistances(const ConfidenceSumRow& row, int width) {
+void fillDistances(const ConfidenceRow& row, int width) {
   constexpr float kLargestPx = 2.0F;
   const float* __restrict disparity = row.disparity;
   const float* __restrict right = row.right;
@@ -122,9 +162,9 @@ void fillDistances(const ConfidenceSumRow& row, int width) {
   }
 }
 
-void fillMeasures(const ConfidenceSumRow& row, int width) {
-  fillCosts(row, width);
-  fillSurface(row, width);
+void fillMeasures(const ConfidenceRow& row, int width) {
+  fillPixels(row, width);
+  fillWindows(row, width);
   fillDistances(row, width);
 }
 
@@ -191,7 +231,7 @@ void roughness(const float* __restrict row, const float* __restrict above, int w
 }  // namespace
 
 const ConfidenceKernels& confidenceKernels() {
-  static const ConfidenceKernels kernels = {fillMaps, fillMeasures, apply, roughness};
+  static const ConfidenceKernels kernels = {fillCells, fillMeasures, apply, roughness};
   return kernels;
 }
 

@@ -8,9 +8,10 @@
 
 namespace fdp_stereo {
 
-constexpr int kConfidenceMeasures = 11;
+constexpr int kConfidenceMeasures = 14;
 constexpr int kConfidenceUnits = 12;
 constexpr int kConfidenceBlock = 32;  ///< pixels at a time
+constexpr int kConfidenceCell = 4;    ///< px, side of a cell of the surface
 
 /// A logistic regression on hinges: unit j is max(0, bias_j + sum of weight_ji * measure_i).
 struct ConfidenceModel {
@@ -25,42 +26,53 @@ struct ConfidenceModel {
   float log_sigma;
 };
 
-/// One row in whole numbers, so that sums over windows are exact in any order.
-struct ConfidenceMapRow {
-  const float* margin;
-  const float* disparity;
-  const std::uint8_t* grey;
-  float lowest;              ///< disparity
-  float steps;               ///< per px
-  std::uint16_t* to_margin;  ///< in kConfidenceMarginSteps
-  std::uint8_t* to_texture;  ///< difference of the left and the right neighbour
-  std::uint8_t* to_known;    ///< 1 where there is a disparity
-  std::uint16_t* to_steps;   ///< disparity above the lowest, at most kConfidenceLargestSteps; 0 where there is none
-  std::int32_t* to_squares;  ///< of these
-};
+/// What is summed over cells, in whole numbers, so that sums over windows are exact in any order.
+enum ConfidenceSum { kKnown, kSteps, kSquares, kRoughness, kMargin, kTexture, kConfidenceSums };
+constexpr float kConfidenceLargestSteps = 4095.0F;  // the squares of a cell fit 32 bits
 constexpr float kConfidenceMarginSteps = 8192.0F;
-constexpr float kConfidenceLargestSteps = 4095.0F;  // 11 x 11 squares fit 32 bits
 
-/// What the measures of one row come from: values of the pixels, and sums over windows around them.
-struct ConfidenceSumRow {
+/// kConfidenceCell rows in cells of as many columns; the last column is repeated where that is needed.
+struct ConfidenceCellRows {
+  const float* disparity[kConfidenceCell];
+  const float* margin[kConfidenceCell];
+  const std::uint8_t* roughness[kConfidenceCell];
+  const std::uint8_t* grey[kConfidenceCell];
+  float lowest;  ///< disparity
+  float steps;   ///< per px
+  /// By cell: number of disparities; sums of the disparities above the lowest, each at most kConfidenceLargestSteps,
+  /// and of their squares; of the roughness; of the margins in kConfidenceMarginSteps; of the differences of the left
+  /// and the right neighbour.
+  double* sums[kConfidenceSums];
+};
+
+/// What windows of cells tell, one entry per cell.
+enum ConfidenceWindow {
+  kRough,
+  kMargins,
+  kTextured,
+  kNearSpread,
+  kNearMean,
+  kWideSpread,
+  kWideMean,
+  kShare,
+  kConfidenceWindows
+};
+
+/// What the measures of one row come from: values of the pixels, and windows around them.
+struct ConfidenceRow {
   const float* margin;
   const float* disparity;
-  const float* right;  ///< disparity of the other view, or null
-  const std::int32_t* roughness_near;
-  const std::int32_t* roughness_wide;
-  const std::int32_t* margins;
-  const std::int32_t* texture;
-  const std::int32_t* known;
-  const std::int32_t* steps;
-  const std::int32_t* squares;
-  float lowest, steps_per_px, contrast;
+  const float* right;                 ///< disparity of the other view, or null
+  const std::int32_t* roughness_sum;  ///< 5 x 5
+  const float* windows[kConfidenceWindows];
+  float lowest, contrast;
   float* measures;  ///< measure i of pixel x is measures[i * stride + x]
-  int stride;
+  int stride;       ///< a multiple of kConfidenceBlock
 };
 
 struct ConfidenceKernels {
-  void (*fillMaps)(const ConfidenceMapRow& row, int width);
-  void (*fillMeasures)(const ConfidenceSumRow& row, int width);
+  void (*fillCells)(const ConfidenceCellRows& rows, int width);
+  void (*fillMeasures)(const ConfidenceRow& row, int width);
   /// Of `width` pixels: confidence and sigma, 0 and NaN where the disparity is NaN. Measures are read up to the next
   /// multiple of kConfidenceBlock.
   void (*apply)(const ConfidenceModel& model, const float* measures, int stride, const float* disparity, int width,
