@@ -6,15 +6,19 @@
 # the presets with OpenCV's matchers, taking turns in one process: median of 7 runs, 2 threads. Without a scene: the
 # sample and, where they are present, those of ../shared/data. The presets accurate and paper take most of the time:
 # `--methods fast,sgbm_hh,sgbm_3way,bm` leaves them out.
+# benchmark.sh --scaling [--preset NAME] [--runs N]: the CPU time with 1, 2, 4 and 8 threads, the critical path through it,
+# and how much faster that makes a machine with as many cores, measured by the clocks of the threads: two cores are enough.
 set -euo pipefail
 # shellcheck source=scripts/environment.sh
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 
+program=compare
 options=()
 scenes=()
 while [ $# -gt 0 ]; do
   case "$1" in
     --json) options+=(--json "$(realpath -m "${2:?--json needs a file}")") && shift 2 ;;
+    --scaling) program=threads && shift ;;
     -h | --help) options+=("$1") && shift ;;
     --*=*) options+=("$1") && shift ;;
     --*) options+=("$1" "${2:?$1 needs a value}") && shift 2 ;;
@@ -23,7 +27,9 @@ while [ $# -gt 0 ]; do
 done
 
 cd "$FDP_STEREO_ROOT"
-if [ ${#scenes[@]} -eq 0 ]; then
+if [ "$program" = threads ]; then
+  scenes=(sample/motorcycle/left.png sample/motorcycle/right.png)
+elif [ ${#scenes[@]} -eq 0 ]; then
   scenes=(sample/motorcycle)
   for folder in MiddEval3-trainingQ Middlebury-v2 KITTI2012; do
     [ ! -d "../shared/data/$folder" ] || scenes+=("../shared/data/$folder")
@@ -31,8 +37,8 @@ if [ ${#scenes[@]} -eq 0 ]; then
 fi
 scripts/setup.sh >&2
 [ -f build/CMakeCache.txt ] || cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
-cmake --build build --target compare >&2
+cmake --build build --target "$program" >&2
 
 # Threads that wait must not count as CPU time.
 export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
-exec build/benchmark/compare "${options[@]}" "${scenes[@]}"
+exec "build/benchmark/$program" "${options[@]}" "${scenes[@]}"

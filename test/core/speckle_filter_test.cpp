@@ -30,7 +30,7 @@ TEST(SpeckleFilter, DiagonalNeighboursAreApart) {
 }
 
 TEST(SpeckleFilter, RemovesExactlyTheSmallRegions) {
-  for (const auto& [rows, cols] : {std::pair{1, 60}, {60, 1}, {23, 31}}) {
+  for (const auto& [rows, cols] : {std::pair{1, 60}, {60, 1}, {23, 31}, {150, 40}}) {
     for (const int max_size : {1, 2, 5, 20}) {
       const cv::Mat before = reference::randomDisparity(rows, cols, 0.0, 6.0, 0.15, 9);
       const std::vector<int> labels = reference::regionLabels(before, 1.5F);

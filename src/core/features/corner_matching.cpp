@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/feature_matching.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -63,10 +64,31 @@ struct Corners {
 
 bool stronger(const cv::KeyPoint* a, const cv::KeyPoint* b) { return a->response > b->response; }
 
+/// As cv::FAST(), some rows at a time.
+std::vector<cv::KeyPoint> findKeypoints(const cv::Mat& grey) {
+  constexpr int kRows = 64;
+  constexpr int kReach = 4;  // rows beside that decide: the ring, and that of the neighbour with which it competes
+  std::vector<std::vector<cv::KeyPoint>> bands((grey.rows + kRows - 1) / kRows);
+  const auto find = [&](int band) {
+    const int first = band * kRows, last = std::min(first + kRows, grey.rows);
+    const int top = std::max(0, first - kReach);
+    std::vector<cv::KeyPoint> found;
+    cv::FAST(grey.rowRange(top, std::min(last + kReach, grey.rows)), found, kFastThreshold, true);
+    for (cv::KeyPoint& point : found) {
+      point.pt.y += static_cast<float>(top);
+      if (point.pt.y >= static_cast<float>(first) && point.pt.y < static_cast<float>(last))
+        bands[band].push_back(point);
+    }
+  };
+  parallelFor(static_cast<int>(bands.size()), find, 1);
+  std::vector<cv::KeyPoint> keypoints;
+  for (const auto& band : bands) keypoints.insert(keypoints.end(), band.begin(), band.end());
+  return keypoints;
+}
+
 /// The strongest corners of each cell, and of those the strongest `max_features`, sorted by (y, x).
 std::vector<cv::Point> findCorners(const cv::Mat& grey, int max_features) {
-  std::vector<cv::KeyPoint> keypoints;
-  cv::FAST(grey, keypoints, kFastThreshold, true);
+  const std::vector<cv::KeyPoint> keypoints = findKeypoints(grey);
   const int columns = (grey.cols + kCellPx - 1) / kCellPx;
   const int rows = (grey.rows + kCellPx - 1) / kCellPx;
   std::vector<std::vector<const cv::KeyPoint*>> cells(static_cast<std::size_t>(columns) * rows);
@@ -80,12 +102,16 @@ std::vector<cv::Point> findCorners(const cv::Mat& grey, int max_features) {
   const std::size_t per_cell = std::max<std::size_t>(1, max_features / cells.size());
   std::vector<const cv::KeyPoint*> kept;
   for (auto& cell : cells) {
-    std::stable_sort(cell.begin(), cell.end(), stronger);
-    if (cell.size() > per_cell) cell.resize(per_cell);
+    if (cell.size() > per_cell) {
+      std::stable_sort(cell.begin(), cell.end(), stronger);
+      cell.resize(per_cell);
+    }
     kept.insert(kept.end(), cell.begin(), cell.end());
   }
-  std::stable_sort(kept.begin(), kept.end(), stronger);
-  if (kept.size() > static_cast<std::size_t>(max_features)) kept.resize(max_features);
+  if (kept.size() > static_cast<std::size_t>(max_features)) {
+    std::stable_sort(kept.begin(), kept.end(), stronger);
+    kept.resize(max_features);
+  }
   std::vector<cv::Point> points;
   points.reserve(kept.size());
   for (const cv::KeyPoint* k : kept) points.emplace_back(k->pt);
@@ -106,7 +132,7 @@ Corners describe(const cv::Mat& grey, int max_features) {
   for (std::size_t b = 0; b < pattern.size(); ++b) {
     offsets[b] = {pattern[b].first.y * step + pattern[b].first.x, pattern[b].second.y * step + pattern[b].second.x};
   }
-  for (std::size_t i = 0; i < corners.points.size(); ++i) {
+  parallelFor(static_cast<int>(corners.points.size()), [&](int i) {
     const uchar* centre = smooth.ptr<uchar>(corners.points[i].y) + corners.points[i].x;
     for (int w = 0; w < kCodeWords; ++w) {
       std::uint64_t word = 0;
@@ -116,7 +142,7 @@ Corners describe(const cv::Mat& grey, int max_features) {
       }
       corners.codes[i][w] = word;
     }
-  }
+  });
   corners.row_begin.assign(grey.rows + 1, 0);
   for (const cv::Point& p : corners.points) ++corners.row_begin[p.y + 1];
   for (int y = 0; y < grey.rows; ++y) corners.row_begin[y + 1] += corners.row_begin[y];

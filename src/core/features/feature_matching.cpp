@@ -13,6 +13,7 @@
 #include "features/corner_matching.hpp"
 #include "features/patch_refinement.hpp"
 #include "images/colour.hpp"
+#include "parallel.hpp"
 
 // OpenCV 4.2 has no SIFT in its main part; FDP_STEREO_FORCE_OPENCV_42 builds what is built there.
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 404 && !defined(FDP_STEREO_FORCE_OPENCV_42)
@@ -106,13 +107,18 @@ FeatureMatches matchDescriptors(const Features& left, const Features& right, con
 /// A match whose patches fit is moved to the pixel centre in the left view and to the fit in the right one; one whose
 /// patches do not agree is dropped.
 FeatureMatches refineMatches(const FeatureMatches& matches, const cv::Mat& left, const cv::Mat& right) {
+  std::vector<PatchFit> fits(matches.size());
+  const auto centreOf = [](const FeatureMatch& match) {
+    return cv::Point(cvRound(match.left.x), cvRound(match.left.y));
+  };
+  parallelFor(static_cast<int>(matches.size()), [&](int i) {
+    const cv::Point centre = centreOf(matches[i]);
+    fits[i] = fitPatch(left, right, centre, matches[i].right + (cv::Point2f(centre) - matches[i].left));
+  });
   FeatureMatches refined;
-  for (const FeatureMatch& match : matches) {
-    const cv::Point centre(cvRound(match.left.x), cvRound(match.left.y));
-    const cv::Point2f start = match.right + (cv::Point2f(centre) - match.left);
-    const PatchFit fit = fitPatch(left, right, centre, start);
-    if (fit.converged && fit.correlation >= kMinCorrelation)
-      refined.push_back({cv::Point2f(centre), fit.right, match.trust});
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i].converged || fits[i].correlation < kMinCorrelation) continue;
+    refined.push_back({cv::Point2f(centreOf(matches[i])), fits[i].right, matches[i].trust});
   }
   return refined;
 }

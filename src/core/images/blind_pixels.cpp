@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/types.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -91,8 +92,8 @@ cv::Mat extendUnder(const cv::Mat& mask, const cv::Mat& image) {
 
 void dropUnexplained(const cv::Mat& blind, cv::Mat& disparity) {
   constexpr float kTolerancePx = 1.0F;
-  std::vector<float> after(blind.cols + 1);  // the next known disparity from x on
-  for (int y = 0; y < blind.rows; ++y) {
+  using Row = std::vector<float>;  // the next known disparity from x on
+  const auto explain_row = [&](int y, Row& after) {
     const auto* hidden = blind.ptr<std::uint8_t>(y);
     auto* d = disparity.ptr<float>(y);
     const auto carry = [&](int x, int neighbour, float known) {  // from one pixel to the next, but not out of a run
@@ -111,7 +112,9 @@ void dropUnexplained(const cv::Mat& blind, cv::Mat& disparity) {
           d[x] >= std::min(before, after[x]) - kTolerancePx && d[x] <= std::max(before, after[x]) + kTolerancePx;
       if (std::isnan(before) || std::isnan(after[x]) || !explained) d[x] = kInvalidDisparity;
     }
-  }
+  };
+  parallelFor(
+      blind.rows, [&] { return Row(blind.cols + 1); }, explain_row);
 }
 
 }  // namespace fdp_stereo

@@ -102,7 +102,7 @@ class Cells {
   void look(int radius, ConfidenceWindow spread, ConfidenceWindow mean) {
     constexpr double kHalfPx = 0.5;
     const cv::Mat known = around(kKnown, radius), steps = around(kSteps, radius), squares = around(kSquares, radius);
-    for (int i = 0; i < known.rows; ++i) {
+    parallelFor(known.rows, [&](int i) {
       for (int j = 0; j < known.cols; ++j) {
         const double count = known.at<double>(i, j), share = 1.0 / std::max(count, 1.0);
         const double middle = steps.at<double>(i, j) * share;
@@ -111,7 +111,7 @@ class Cells {
         windows_[mean].at<float>(i, j) = static_cast<float>(middle / steps_ + lowest_);
         windows_[kShare].at<float>(i, j) = static_cast<float>(count / pixelsOf(radius));
       }
-    }
+    });
   }
 
   void lookAtCosts() {

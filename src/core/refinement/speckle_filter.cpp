@@ -10,7 +10,7 @@ namespace fdp_stereo {
 void filterSpeckles(cv::Mat& disparity, const SpeckleFilterParams& params) {
   requireMap(disparity, "speckle filter");
   if (params.max_size <= 0) return;
-  Regions regions(disparity, static_cast<float>(params.max_difference_px));
+  const Regions regions(disparity, static_cast<float>(params.max_difference_px));
   regions.drop(disparity, [&](int region) { return regions.size(region) < params.max_size; });
 }
 

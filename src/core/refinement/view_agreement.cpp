@@ -68,8 +68,7 @@ class RowPair {
 };
 
 /// By run, from the pixels of its region in its row.
-std::vector<Agreement> measureRuns(const SeenViews& views, const cv::Mat& disparity, const Regions& regions,
-                                   const std::vector<int>& region_of) {
+std::vector<Agreement> measureRuns(const SeenViews& views, const cv::Mat& disparity, const Regions& regions) {
   std::vector<Agreement> agreements(regions.runs());
   const auto measure_row = [&](int i, RowPair& rows) {
     const int y = kRowStep * i;
@@ -80,10 +79,11 @@ std::vector<Agreement> measureRuns(const SeenViews& views, const cv::Mat& dispar
     for (int x = 0; x < disparity.cols; ++x) {
       if (std::isnan(d[x])) continue;
       Agreement& agreement = agreements[run[x]];
-      const int region = region_of[run[x]];
+      const int region = regions.regionOf(run[x]);
       for (const int reach : kReachesPx) {
         if (x < reach || x + reach >= disparity.cols) continue;
-        if (region_of[run[x - reach]] == region && region_of[run[x + reach]] == region) rows.addTo(x, reach, agreement);
+        if (regions.regionOf(run[x - reach]) != region || regions.regionOf(run[x + reach]) != region) continue;
+        rows.addTo(x, reach, agreement);
       }
       if (vouched != nullptr && vouched[x] != 0) agreement.vouched = true;
     }
@@ -95,12 +95,11 @@ std::vector<Agreement> measureRuns(const SeenViews& views, const cv::Mat& dispar
 }  // namespace
 
 void filterRegions(const SeenViews& views, const SpeckleFilterParams& params, cv::Mat& disparity) {
-  Regions regions(disparity, static_cast<float>(params.max_difference_px));
-  std::vector<int> region_of(regions.runs());
-  for (int run = 0; run < regions.runs(); ++run) region_of[run] = regions.regionOf(run);
-  std::vector<Agreement> agreements = measureRuns(views, disparity, regions, region_of);
+  const Regions regions(disparity, static_cast<float>(params.max_difference_px));
+  std::vector<Agreement> agreements = measureRuns(views, disparity, regions);
   for (int run = 0; run < regions.runs(); ++run) {
-    if (region_of[run] != run) agreements[region_of[run]].add(agreements[run]);
+    const int region = regions.regionOf(run);
+    if (region != run) agreements[region].add(agreements[run]);
   }
   regions.drop(disparity,
                [&](int region) { return regions.size(region) < params.max_size || agreements[region].isChance(); });

@@ -12,6 +12,7 @@
 #include "arguments.hpp"
 #include "fdp_stereo/left_right_check.hpp"
 #include "fdp_stereo/speckle_filter.hpp"
+#include "parallel.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -47,12 +48,12 @@ cv::Mat sampleGrid(const cv::Mat& map, const QuasiDenseParams& params) {
   const int first_row = firstOf(rows_per_seed, map.rows), first_x = firstOf(params.spacing_px, map.cols);
   cv::Mat grid((map.rows - 1 - first_row) / rows_per_seed + 1, (map.cols - 1 - first_x) / params.spacing_px + 1,
                CV_32FC1);
-  for (int row = 0; row < grid.rows; ++row) {
+  parallelFor(grid.rows, [&](int row) {
     for (int column = 0; column < grid.cols; ++column) {
       grid.at<float>(row, column) =
           medianAround(map.ptr<float>(first_row + row * rows_per_seed), map.cols, first_x + column * params.spacing_px);
     }
-  }
+  });
   return grid;
 }
 

@@ -9,9 +9,11 @@
 #include <limits>
 #include <utility>
 
+#include <omp.h>
 #include <Eigen/LU>
 
 #include "images/colour.hpp"
+#include "parallel.hpp"
 #include "simd/propagation_kernels.hpp"
 
 namespace fdp_stereo {
@@ -51,7 +53,7 @@ cv::Mat stepCosts(const cv::Mat& left, int dx, int dy, double gamma, double reac
 }
 
 void sweepRows(GeodesicMap& map) {
-  for (int y = 0; y < map.distance.rows; ++y) {
+  parallelFor(map.distance.rows, [&](int y) {
     auto* distance = map.distance.ptr<float>(y);
     auto* owner = map.owner.ptr<std::int32_t>(y);
     const auto* step = map.across.ptr<float>(y);
@@ -63,17 +65,25 @@ void sweepRows(GeodesicMap& map) {
     };
     for (int x = 1; x < map.distance.cols; ++x) relax(x, x - 1, step[x - 1]);
     for (int x = map.distance.cols - 2; x >= 0; --x) relax(x, x + 1, step[x]);
-  }
+  });
 }
 
+/// Some columns at a time.
 void sweepColumns(GeodesicMap& map) {
+  constexpr int kColumns = 64;
   const PropagationKernels& kernels = FDP_STEREO_SELECT(propagationKernels);
-  const auto relax = [&](int to, int from, int step) {
-    kernels.relaxRow(map.distance.ptr<float>(from), map.owner.ptr<std::int32_t>(from), map.down.ptr<float>(step),
-                     map.distance.cols, map.distance.ptr<float>(to), map.owner.ptr<std::int32_t>(to));
+  const cv::Size size = map.distance.size();
+  const auto sweep = [&](int block) {
+    const int x = block * kColumns, count = std::min(kColumns, size.width - x);
+    const auto relax = [&](int to, int from, int step) {
+      kernels.relaxRow(map.distance.ptr<float>(from) + x, map.owner.ptr<std::int32_t>(from) + x,
+                       map.down.ptr<float>(step) + x, count, map.distance.ptr<float>(to) + x,
+                       map.owner.ptr<std::int32_t>(to) + x);
+    };
+    for (int y = 1; y < size.height; ++y) relax(y, y - 1, y - 1);
+    for (int y = size.height - 2; y >= 0; --y) relax(y, y + 1, y);
   };
-  for (int y = 1; y < map.distance.rows; ++y) relax(y, y - 1, y - 1);
-  for (int y = map.distance.rows - 2; y >= 0; --y) relax(y, y + 1, y);
+  parallelFor((size.width + kColumns - 1) / kColumns, sweep, 1);
 }
 
 /// The seeds whose regions touch that of one seed, each with the shortest way between the two that was met; the
@@ -108,14 +118,19 @@ class Neighbours {
   int count_ = 0;
 };
 
-std::vector<Neighbours> findNeighbours(std::size_t seeds, const GeodesicMap& map) {
-  std::vector<Neighbours> neighbours(seeds);
-  const auto meet = [&](int a, int b, float way) {
-    if (a < 0 || b < 0) return;
-    neighbours[a].meet(b, way);
-    neighbours[b].meet(a, way);
-  };
-  for (int y = 0; y < map.owner.rows; ++y) {
+/// Two seeds whose regions touch, and the way between them there.
+struct Border {
+  int a, b;
+  float way;
+};
+
+/// By row.
+std::vector<std::vector<Border>> findBorders(const GeodesicMap& map) {
+  std::vector<std::vector<Border>> borders(map.owner.rows);
+  parallelFor(map.owner.rows, [&](int y) {
+    const auto meet = [&](int a, int b, float way) {
+      if (a >= 0 && b >= 0) borders[y].push_back({a, b, way});
+    };
     const int below = std::min(y + 1, map.owner.rows - 1);
     const auto* owner = map.owner.ptr<std::int32_t>(y);
     const auto* owner_below = map.owner.ptr<std::int32_t>(below);
@@ -128,7 +143,25 @@ std::vector<Neighbours> findNeighbours(std::size_t seeds, const GeodesicMap& map
       if (owner[x] != owner[right]) meet(owner[x], owner[right], distance[x] + across[x] + distance[right]);
       if (owner[x] != owner_below[x]) meet(owner[x], owner_below[x], distance[x] + down[x] + distance_below[x]);
     }
-  }
+  });
+  return borders;
+}
+
+/// Each thread looks through all borders for those of its seeds.
+std::vector<Neighbours> findNeighbours(int seeds, const GeodesicMap& map) {
+  const std::vector<std::vector<Border>> borders = findBorders(map);
+  std::vector<Neighbours> neighbours(seeds);
+  const int parts = omp_get_max_threads(), share = (seeds + parts - 1) / parts;
+  const auto meet_all = [&](int part) {
+    const auto own = [&](int seed) { return seed / share == part; };
+    for (const std::vector<Border>& row : borders) {
+      for (const Border& border : row) {
+        if (own(border.a)) neighbours[border.a].meet(border.b, border.way);
+        if (own(border.b)) neighbours[border.b].meet(border.a, border.way);
+      }
+    }
+  };
+  parallelFor(parts, meet_all, 1);
   return neighbours;
 }
 
@@ -241,7 +274,7 @@ cv::Mat cellMeans(const cv::Mat& left) {
   static_assert(kCellPx == 2, "a cell has two rows and columns, of which the border may cut off one");
   const int channels = left.channels();
   cv::Mat cells((left.rows + 1) / 2, (left.cols + 1) / 2, left.type());
-  for (int y = 0; y < cells.rows; ++y) {
+  parallelFor(cells.rows, [&](int y) {
     const auto* upper = left.ptr<uchar>(2 * y);
     const auto* lower = left.ptr<uchar>(std::min(2 * y + 1, left.rows - 1));
     auto* mean = cells.ptr<uchar>(y);
@@ -250,7 +283,7 @@ cv::Mat cellMeans(const cv::Mat& left) {
       const int b = a + channels < left.cols * channels ? a + channels : a;
       mean[i] = static_cast<uchar>((upper[a] + upper[b] + lower[a] + lower[b] + 2) / 4);
     }
-  }
+  });
   return cells;
 }
 
@@ -281,7 +314,7 @@ GeodesicMap spreadSeeds(const Seeds& seeds, const cv::Mat& left, double gamma, d
 }
 
 std::vector<SeedPlane> fitPlanes(const Seeds& seeds, const GeodesicMap& map) {
-  const std::vector<Neighbours> neighbours = findNeighbours(seeds.size(), map);
+  const std::vector<Neighbours> neighbours = findNeighbours(static_cast<int>(seeds.size()), map);
   std::vector<SeedPlane> planes(seeds.size());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < static_cast<int>(seeds.size()); ++i) planes[i] = fitPlane(seeds, i, neighbours[i]);
