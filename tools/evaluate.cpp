@@ -39,22 +39,16 @@ struct Options {
 
 void addOptions(CLI::App& app, Options& options) {
   app.add_option("SCENES", options.scenes, "Middlebury or KITTI folders, or folders of such");
-  app.add_option("--preset", options.presets, "Presets by name or YAML file; may be given again (default: fast)")
-      ->expected(1)
-      ->take_all();
-  app.add_option("--variant", options.variants, "A further set of parameters to compare; may be given again")
-      ->type_name("NAME=PRESET[,KEY=VALUE...]")
-      ->expected(1)
-      ->take_all();
+  takeOneEach(*app.add_option("--preset", options.presets, "Presets; may be given again (default: fast)"), "NAME|FILE");
+  takeOneEach(*app.add_option("--variant", options.variants, "A further set of parameters; may be given again"),
+              "NAME=PRESET[,KEY=VALUE...]");
   app.add_flag("--peers", options.peers, "Run OpenCV's StereoSGBM (HH, 3WAY) and StereoBM beside them");
   addPipelineOptions(app, options.pipeline);
   addSeedSimulationOptions(app, options.seeds);
   app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
-  app.add_option("--corrupt", options.corruptions,
-                 "Spoil the images first: " + corruptionNames() + " or all; may be given again")
-      ->type_name("KIND")
-      ->expected(1)
-      ->take_all();
+  takeOneEach(*app.add_option("--corrupt", options.corruptions,
+                              "Spoil the images first: " + corruptionNames() + " or all; may be given again"),
+              "KIND");
   app.add_option("--csv", options.csv, "Write the table as CSV");
   app.add_option("--report", options.run.folder,
                  "Write pictures, table and index.html here; keeps what is there and goes on where a run stopped");

@@ -3,6 +3,7 @@
 #include "evaluation/corruption.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
@@ -140,7 +141,11 @@ std::string corruptionNames() {
 }
 
 std::vector<const Corruption*> chooseCorruptions(const std::vector<std::string>& names) {
-  std::set<std::string> wanted(names.begin(), names.end());
+  std::set<std::string> wanted;
+  for (std::string name : names) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    wanted.insert(name);
+  }
   const bool all = wanted.erase("all") > 0;
   std::vector<const Corruption*> chosen;
   for (const Corruption& corruption : corruptions()) {

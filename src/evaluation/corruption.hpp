@@ -23,8 +23,8 @@ const std::vector<Corruption>& corruptions();
 /// Their names, comma between them.
 std::string corruptionNames();
 
-/// The named ones, each once, in their order above; "all" stands for all. Throws std::invalid_argument with the name
-/// that there is not and all that there are.
+/// The named ones, in capitals or not, each once, in their order above; "all" stands for all. Throws
+/// std::invalid_argument with the name that there is not and all that there are.
 std::vector<const Corruption*> chooseCorruptions(const std::vector<std::string>& names);
 
 /// Spoils both views and adds "+KIND" to the name; number and type of the pixels stay. The same scene always gives the

@@ -104,6 +104,12 @@ class EvaluateTest(unittest.TestCase):
             self.assertLess(float(rows["one", method]["bad_2"]), 40.0)
             self.assertGreater(float(rows["one", method]["time_ms"]), 0.0)
 
+    def test_scenes_may_follow_any_option(self):
+        self.evaluate("--corrupt", "rows", "--preset", "fast", "--variant", "wta=fast,optimizer.type=winner_takes_all",
+                      "--set", "semi_global.p1=0.5", "--csv", self.table, *self.scenes[:2])
+        self.assertEqual(set(read_csv(self.table)),
+                         {(scene, method) for scene in ("one+rows", "two+rows") for method in ("fast", "wta")})
+
     def test_corrupted_scenes_stand_beside_the_others(self):
         kinds = ("none", "noise", "dark", "gain", "gamma", "blur", "jpeg", "vignette", "saturation", "rows", "dirt")
         out, _ = self.evaluate(*self.scenes, "--peers", "--corrupt", "all", "--csv", self.table)
@@ -121,11 +127,11 @@ class EvaluateTest(unittest.TestCase):
             for method, ratio in zip(table[0][1:], ratios):
                 self.assertAlmostEqual(float(ratio), mean[method] / mean["sgbm_hh"], delta=0.006)
         self.assertIn("mean of 3+noise", out)
-        self.evaluate(*self.scenes, "--corrupt", "noise", "--corrupt", "none", "--csv", self.table, "--jobs", 3)
+        self.evaluate(*self.scenes, "--corrupt", "noise", "--corrupt", "none", "--corrupt", "NOISE", "--csv", self.table, "--jobs", 3)
         again = read_csv(self.table)
         self.assertEqual(len(again), 6)
         for key, row in again.items():
-            for figure in BAD:
+            for figure in (*BAD, "a95_px"):
                 self.assertEqual(row[figure], rows[key][figure], key)
 
     def test_a_report_shows_corrupted_images(self):
