@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Scenes with known disparity and the errors on them, for tools, benchmarks and tests; no part of what runs on a robot.
-add_library(fdp_stereo_evaluation STATIC src/evaluation/scene.cpp src/evaluation/evaluation.cpp)
+add_library(fdp_stereo_evaluation STATIC
+  src/evaluation/corruption.cpp src/evaluation/scene.cpp src/evaluation/evaluation.cpp)
 target_include_directories(fdp_stereo_evaluation PUBLIC ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(fdp_stereo_evaluation PUBLIC fdp_stereo_core)
 
@@ -52,6 +53,7 @@ add_library(fdp_stereo_evaluate STATIC
   src/evaluation/report.cpp
   src/evaluation/result.cpp
   src/evaluation/result_table.cpp
+  src/evaluation/robustness.cpp
   src/evaluation/runner.cpp
   ${PROJECT_BINARY_DIR}/generated/report_template.cpp
 )

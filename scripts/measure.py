@@ -83,7 +83,7 @@ def measure_accuracy(measured, options):
         filled, answered = (evaluate(folder, options.methods, fill) for fill in (True, False))
         for method in options.methods:
             rows = filled[method]
-            columns = [column for column in rows[0] if column.startswith("bad_") or column in ("d1", "average_px")]
+            columns = [column for column in rows[0] if column.startswith("bad_") or column in ("d1", "average_px", "a95_px")]
             entry = {column: mean(rows, lambda row, column=column: float(row[column])) for column in columns}
             entry["memory_mb"] = mean(rows, lambda row: float(row["memory_mb"]))
             entry["answered"] = mean(answered[method], lambda row: float(row["density"]))

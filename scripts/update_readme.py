@@ -24,7 +24,7 @@ SETS = (("MiddEval3-trainingQ", "Middlebury V3 at quarter size"), ("Middlebury-v
 NAMES = {"fast": "`fast`", "light": "`light`", "accurate": "`accurate`, offline", "sgbm_hh": "StereoSGBM, MODE_HH",
          "sgbm_3way": "StereoSGBM, MODE_SGBM_3WAY", "bm": "StereoBM"}
 COLUMNS = (("bad_0.5", "bad .5"), ("bad_1", "bad 1"), ("bad_2", "bad 2"), ("bad_3", "bad 3"), ("d1", "D1"),
-           ("average_px", "avg px"), ("answered", "answered %"), ("wrong", "wrong of answered %"), ("memory_mb", "MB"))
+           ("average_px", "avg px"), ("a95_px", "A95 px"), ("answered", "answered %"), ("wrong", "wrong of answered %"), ("memory_mb", "MB"))
 BLOCK = "<!-- %s -->.*?<!-- /%s -->"
 
 

@@ -42,10 +42,8 @@ void addPipelineOptions(CLI::App& app, PipelineOptions& options) {
   app.add_option("--num-disparities", options.num_disparities,
                  "Number of disparities searched, px (search.num_disparities)");
   app.add_option("--threads", options.threads, "Threads, 0 = all cores (pipeline.threads)");
-  app.add_option("--set", options.assignments, "Set one parameter: stage.key=value; may be given again")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  takeOneEach(*app.add_option("--set", options.assignments, "Set one parameter: stage.key=value; may be given again"),
+              "KEY=VALUE");
   app.add_flag("--fill", options.fill, "Fill pixels without disparity (hole_filling.enabled=true)");
   app.add_flag_callback(
       "--list-parameters",
@@ -70,6 +68,10 @@ CLI::Validator numberIn(double smallest, double largest) {
   };
   CLI::Validator validator(range);
   return validator.operation([check](std::string& text) { return check(text); });
+}
+
+void takeOneEach(CLI::Option& option, const std::string& type_name) {
+  option.type_name(type_name)->expected(1)->allow_extra_args(false)->take_all();
 }
 
 void addOverwriteOption(CLI::App& app, bool& overwrite) {

@@ -44,6 +44,9 @@ void addMaskOptions(CLI::App& app, MaskOptions& masks);
 /// CLI::Range of numbers that "nan" is not in.
 CLI::Validator numberIn(double smallest, double largest);
 
+/// Lets a list of texts take one each time that the option is given, and nothing of what follows.
+void takeOneEach(CLI::Option& option, const std::string& type_name);
+
 /// Adds --overwrite.
 void addOverwriteOption(CLI::App& app, bool& overwrite);
 

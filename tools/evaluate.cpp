@@ -8,9 +8,11 @@
 #include <set>
 
 #include "command_line.hpp"
+#include "evaluation/corruption.hpp"
 #include "evaluation/method.hpp"
 #include "evaluation/report.hpp"
 #include "evaluation/result.hpp"
+#include "evaluation/robustness.hpp"
 #include "evaluation/runner.hpp"
 #include "output_files.hpp"
 
@@ -23,6 +25,7 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<std::string> presets;
   std::vector<std::string> variants;
+  std::vector<std::string> corruptions;
   bool peers = false;
   bool merge = false;
   std::string csv;
@@ -36,17 +39,16 @@ struct Options {
 
 void addOptions(CLI::App& app, Options& options) {
   app.add_option("SCENES", options.scenes, "Middlebury or KITTI folders, or folders of such");
-  app.add_option("--preset", options.presets, "Presets by name or YAML file; may be given again (default: fast)")
-      ->expected(1)
-      ->take_all();
-  app.add_option("--variant", options.variants, "A further set of parameters to compare; may be given again")
-      ->type_name("NAME=PRESET[,KEY=VALUE...]")
-      ->expected(1)
-      ->take_all();
+  takeOneEach(*app.add_option("--preset", options.presets, "Presets; may be given again (default: fast)"), "NAME|FILE");
+  takeOneEach(*app.add_option("--variant", options.variants, "A further set of parameters; may be given again"),
+              "NAME=PRESET[,KEY=VALUE...]");
   app.add_flag("--peers", options.peers, "Run OpenCV's StereoSGBM (HH, 3WAY) and StereoBM beside them");
   addPipelineOptions(app, options.pipeline);
   addSeedSimulationOptions(app, options.seeds);
   app.add_flag("--all", options.run.all_pixels, "Score all pixels with a truth, not only those that both cameras see");
+  takeOneEach(*app.add_option("--corrupt", options.corruptions,
+                              "Spoil the images first: " + corruptionNames() + " or all; may be given again"),
+              "KIND");
   app.add_option("--csv", options.csv, "Write the table as CSV");
   app.add_option("--report", options.run.folder,
                  "Write pictures, table and index.html here; keeps what is there and goes on where a run stopped");
@@ -68,6 +70,14 @@ void parseShard(const std::string& text, RunOptions& run) {
     throw UsageError("--shard '" + text + "': must be i/n with 1 <= i <= n");
   }
   if (run.folder.empty()) throw UsageError("--shard needs --report, where the parts meet");
+}
+
+std::vector<const Corruption*> parseCorruptions(const std::vector<std::string>& names) {
+  try {
+    return chooseCorruptions(names);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--corrupt ") + error.what());
+  }
 }
 
 std::vector<Method> chooseMethods(const Options& options) {
@@ -96,7 +106,11 @@ std::vector<Method> chooseMethods(const Options& options) {
 }
 
 int reportFailures(const std::vector<Failure>& failures) {
-  for (const Failure& failure : failures) std::cerr << "evaluate: " << failure.scene << ": " << failure.problem << '\n';
+  std::set<std::string> lines;  // a scene that cannot be read fails with each corruption
+  for (const Failure& failure : failures) {
+    const std::string line = "evaluate: " + failure.scene + ": " + failure.problem + '\n';
+    if (lines.insert(line).second) std::cerr << line;
+  }
   return failures.empty() ? 0 : 1;
 }
 
@@ -132,7 +146,7 @@ int merge(const Options& options) {
   writeCsv((fs::path(folder) / shardTableName(1, 1)).string(), rows);
   writeReport(folder, rows, {"Put together from the tables of several runs.", options.command});
   if (!options.csv.empty()) writeCsv(options.csv, rows);
-  std::cout << tableText(rows);
+  std::cout << tableText(rows) << tableText(robustnessOf(rows));
   return 0;
 }
 
@@ -140,11 +154,12 @@ int evaluate(Options& options) {
   if (options.merge) return merge(options);
   if (options.scenes.empty()) throw UsageError("SCENES is required");
   parseShard(options.shard, options.run);
+  options.run.corruptions = parseCorruptions(options.corruptions);
   const std::vector<Method> methods = chooseMethods(options);
   checkOutputs({options.csv}, options.presets, options.overwrite);
   if (!options.run.folder.empty()) checkReport(options.run.folder);
   const RunOutcome outcome = runMethods(options.scenes, methods, options.run);
-  if (!outcome.rows.empty()) std::cout << tableText(outcome.rows);
+  if (!outcome.rows.empty()) std::cout << tableText(outcome.rows) << tableText(robustnessOf(outcome.rows));
   if (!options.csv.empty()) writeCsv(options.csv, outcome.rows);
   if (!options.run.folder.empty() && options.run.shard_count == 1) writePage(options, outcome.rows.size());
   return reportFailures(outcome.failures);

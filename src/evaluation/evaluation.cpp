@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 
 namespace fdp_stereo {
 namespace {
 
 constexpr float kRedErrorPx = 4.0F;
+constexpr double kQuantile = 0.95;
 const cv::Vec3b kNoAnswerColor(255, 0, 255);
 
 void checkMaps(const cv::Mat& disparity, const cv::Mat& truth, const cv::Mat& mask) {
@@ -31,21 +33,31 @@ bool scored(const cv::Mat& mask, int y, int x) { return mask.empty() || mask.at<
 /// Sums over pixels, from which the shares follow.
 struct Tally {
   std::int64_t pixels = 0;
-  std::int64_t answers = 0;
   std::array<std::int64_t, kBadThresholdsPx.size()> above{};  // among the answers
   std::int64_t outliers = 0;                                  // of D1, likewise
-  double error_px = 0.0;
+  std::vector<float> errors_px;                               // of the answers
 
   void add(float disparity, float truth) {
     ++pixels;
     if (!answered(disparity)) return;
-    ++answers;
     const float error = std::abs(disparity - truth);
     for (std::size_t i = 0; i < above.size(); ++i) above[i] += error > static_cast<float>(kBadThresholdsPx[i]) ? 1 : 0;
     outliers += error > static_cast<float>(kBadThresholdsPx.back()) && error > kOutlierShare * truth ? 1 : 0;
-    error_px += std::min(static_cast<double>(error), kMaxErrorPx);
+    errors_px.push_back(std::min(error, static_cast<float>(kMaxErrorPx)));
   }
 };
+
+double meanOf(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// The smallest of the values that kQuantile of them do not exceed.
+double quantileOf(std::vector<float> values) {
+  const double count = std::ceil(kQuantile * static_cast<double>(values.size()));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(count) - 1;
+  std::nth_element(values.begin(), place, values.end());
+  return static_cast<double>(*place);
+}
 
 cv::Vec3b errorColor(float error_px) {
   const float t = std::min(error_px, kRedErrorPx);
@@ -71,13 +83,15 @@ DisparityErrors evaluateDisparity(const cv::Mat& disparity, const cv::Mat& truth
     return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
   };
   DisparityErrors errors;
-  const std::int64_t unanswered = tally.pixels - tally.answers;
+  const auto answers = static_cast<std::int64_t>(tally.errors_px.size());
+  const std::int64_t unanswered = tally.pixels - answers;
   for (std::size_t i = 0; i < errors.bad.size(); ++i) errors.bad[i] = share(tally.above[i] + unanswered, tally.pixels);
   errors.d1 = share(tally.outliers + unanswered, tally.pixels);
-  errors.density = share(tally.answers, tally.pixels);
-  if (tally.answers > 0) {
-    errors.sparse_bad_half = share(tally.above[2], tally.answers);
-    errors.average_px = tally.error_px / static_cast<double>(tally.answers);
+  errors.density = share(answers, tally.pixels);
+  if (answers > 0) {
+    errors.sparse_bad_half = share(tally.above[2], answers);
+    errors.average_px = meanOf(tally.errors_px);
+    errors.a95_px = quantileOf(tally.errors_px);
   }
   return errors;
 }
@@ -92,6 +106,7 @@ DisparityErrors averageErrors(const std::vector<DisparityErrors>& errors, const 
   DisparityErrors mean;
   mean.sparse_bad_half = 0.0;
   mean.average_px = 0.0;
+  mean.a95_px = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double weight = weights[i] / total;
     for (std::size_t t = 0; t < mean.bad.size(); ++t) mean.bad[t] += weight * errors[i].bad[t];
@@ -99,13 +114,15 @@ DisparityErrors averageErrors(const std::vector<DisparityErrors>& errors, const 
     mean.density += weight * errors[i].density;
     mean.sparse_bad_half += weight * errors[i].sparse_bad_half;
     mean.average_px += weight * errors[i].average_px;
+    mean.a95_px += weight * errors[i].a95_px;
   }
   return mean;
 }
 
 double middleburyWeight(const std::string& scene_name) {
   static const std::vector<std::string> half = {"PianoL", "Playroom", "Playtable", "Shelves", "Vintage"};
-  return std::find(half.begin(), half.end(), scene_name) == half.end() ? 1.0 : 0.5;
+  const std::string name = scene_name.substr(0, scene_name.find('+'));
+  return std::find(half.begin(), half.end(), name) == half.end() ? 1.0 : 0.5;
 }
 
 cv::Mat colorizeErrors(const cv::Mat& disparity, const cv::Mat& truth, const cv::Mat& mask) {

@@ -13,7 +13,7 @@ namespace fdp_stereo {
 
 constexpr std::array<double, 6> kBadThresholdsPx = {0.125, 0.25, 0.5, 1.0, 2.0, 3.0};
 constexpr double kOutlierShare = 0.05;  ///< of the true disparity, for D1
-constexpr double kMaxErrorPx = 100.0;   ///< an error counts at most this much in the average
+constexpr double kMaxErrorPx = 100.0;   ///< an error counts at most this much in average and quantile
 
 /// Errors over the scored pixels that have a truth; a pixel without answer counts as bad. Shares in %.
 struct DisparityErrors {
@@ -22,6 +22,7 @@ struct DisparityErrors {
   double density = 0.0;            ///< share with an answer
   double sparse_bad_half = 100.0;  ///< bad 0.5 among the answered
   double average_px = 100.0;       ///< mean error of the answered, each capped at kMaxErrorPx
+  double a95_px = 100.0;           ///< 95 % of the answered are off by at most this much, capped likewise
 };
 
 /// Compares two maps of one size, CV_32FC1 px; in `disparity` NaN, infinity and negative values are no answer, in
@@ -33,7 +34,8 @@ DisparityErrors evaluateDisparity(const cv::Mat& disparity, const cv::Mat& truth
 /// 0.
 DisparityErrors averageErrors(const std::vector<DisparityErrors>& errors, const std::vector<double>& weights);
 
-/// Weight of a scene in the Middlebury V3 average: 0.5 for PianoL, Playroom, Playtable, Shelves and Vintage, else 1.
+/// Weight of a scene in the Middlebury V3 average: 0.5 for PianoL, Playroom, Playtable, Shelves and Vintage, else 1. A
+/// kind of corruption that follows the name ("Vintage+noise") changes nothing.
 double middleburyWeight(const std::string& scene_name);
 
 /// Errors as colours, CV_8UC3: blue (none) over white (1 px) to red (4 px and more), black = no truth, dark where

@@ -15,8 +15,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evaluation/corruption.hpp"
 #include "evaluation/pictures.hpp"
 #include "evaluation/report_template.hpp"
+#include "evaluation/robustness.hpp"
 #include "evaluation/runner.hpp"
 #include "fdp_stereo/io.hpp"
 
@@ -34,9 +36,25 @@ Json rowsJson(const std::vector<ResultRow>& rows) {
   for (const ResultRow& row : rows) {
     Json values = Json::array();
     for (const Column& column : resultColumns()) values.push_back(column.get(row));
-    list.push_back({{"scene", row.scene}, {"method", row.method}, {"values", values}});
+    list.push_back(
+        {{"scene", row.scene}, {"images", corruptionOf(row.scene)}, {"method", row.method}, {"values", values}});
   }
   return list;
+}
+
+Json robustnessJson(const Robustness& robustness) {
+  Json kinds = Json::array();
+  for (const Robustness::Kind& kind : robustness.kinds) {
+    kinds.push_back({{"images", kind.corruption}, {"ratios", kind.ratios}});
+  }
+  return {{"methods", robustness.methods}, {"kinds", kinds}};
+}
+
+/// What each kind of images is.
+Json corruptionsJson() {
+  Json texts = Json::object();
+  for (const Corruption& corruption : corruptions()) texts[corruption.name] = corruption.strength;
+  return texts;
 }
 
 std::string fixed(double value, int digits) {
@@ -92,6 +110,8 @@ std::string reportJson(const std::string& folder, const std::vector<ResultRow>& 
                      {"columns", columns},
                      {"rows", rowsJson(shown)},
                      {"means", rowsJson(averageRows(shown))},
+                     {"corruptions", corruptionsJson()},
+                     {"robustness", robustnessJson(robustnessOf(shown))},
                      {"pictures", scenesJson(folder, newestRows(rows))}};
   std::string text = page.dump(-1, ' ', false, Json::error_handler_t::replace);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {

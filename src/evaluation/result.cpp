@@ -11,7 +11,9 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include "evaluation/corruption.hpp"
 #include "fdp_stereo/io.hpp"
 
 namespace fdp_stereo {
@@ -96,7 +98,8 @@ std::vector<ResultRow> newestOf(const std::vector<ResultRow>& rows, Key&& key) {
 
 ResultRow averageOf(const std::vector<const ResultRow*>& rows) {
   ResultRow mean = *rows.front();
-  mean.scene = "mean of " + std::to_string(rows.size());
+  const std::string kind = corruptionOf(mean.scene);
+  mean.scene = "mean of " + std::to_string(rows.size()) + (kind == "none" ? "" : "+" + kind);
   double total = 0.0;
   for (const ResultRow* row : rows) total += middleburyWeight(row->scene);
   for (const Column& column : resultColumns()) {
@@ -132,6 +135,7 @@ const std::vector<Column>& resultColumns() {
       FDP_STEREO_COLUMN("density", "density", Better::kLarger, errors.density),
       FDP_STEREO_COLUMN("sparse_bad_0.5", "sparse .5", Better::kSmaller, errors.sparse_bad_half),
       FDP_STEREO_COLUMN("average_px", "avg px", Better::kSmaller, errors.average_px),
+      FDP_STEREO_COLUMN("a95_px", "A95 px", Better::kSmaller, errors.a95_px),
       FDP_STEREO_COLUMN("time_ms", "ms", Better::kSmaller, time_ms),
       FDP_STEREO_COLUMN("cpu_ms", "CPU ms", Better::kSmaller, cpu_ms),
       FDP_STEREO_COLUMN("memory_mb", "MB", Better::kSmaller, memory_mb),
@@ -206,27 +210,27 @@ std::vector<ResultRow> rowsToShow(const std::vector<ResultRow>& rows) {
 }
 
 std::vector<ResultRow> averageRows(const std::vector<ResultRow>& rows) {
-  std::vector<std::string> methods;
+  std::vector<std::vector<const ResultRow*>> groups;
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
   for (const ResultRow& row : rows) {
-    if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
+    const auto [place, is_new] = places.emplace(std::pair(corruptionOf(row.scene), row.method), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[place->second].push_back(&row);
   }
   std::vector<ResultRow> averages;
-  for (const std::string& method : methods) {
-    std::vector<const ResultRow*> own;
-    for (const ResultRow& row : rows) {
-      if (row.method == method) own.push_back(&row);
-    }
-    averages.push_back(averageOf(own));
-  }
+  for (const auto& group : groups) averages.push_back(averageOf(group));
   return averages;
 }
 
 std::string tableText(const std::vector<ResultRow>& rows) {
+  const std::vector<ResultRow> averages = averageRows(rows);
   std::size_t scene_width = 14;
   std::size_t method_width = 11;
-  for (const ResultRow& row : rows) {
-    scene_width = std::max(scene_width, row.scene.size() + 2);
-    method_width = std::max(method_width, row.method.size() + 2);
+  for (const std::vector<ResultRow>* part : {&rows, &averages}) {
+    for (const ResultRow& row : *part) {
+      scene_width = std::max(scene_width, row.scene.size() + 2);
+      method_width = std::max(method_width, row.method.size() + 2);
+    }
   }
   std::ostringstream out;
   out << std::left << std::setw(static_cast<int>(scene_width)) << "scene" << std::setw(static_cast<int>(method_width))
@@ -234,7 +238,7 @@ std::string tableText(const std::vector<ResultRow>& rows) {
   for (const Column& column : resultColumns()) out << std::setw(10) << column.heading;
   out << '\n';
   for (const ResultRow& row : rows) printRow(out, row, scene_width, method_width);
-  for (const ResultRow& row : averageRows(rows)) printRow(out, row, scene_width, method_width);
+  for (const ResultRow& row : averages) printRow(out, row, scene_width, method_width);
   return out.str();
 }
 

@@ -61,8 +61,8 @@ std::vector<ResultRow> newestRows(const std::vector<ResultRow>& rows);
 /// no mean mixes them.
 std::vector<ResultRow> rowsToShow(const std::vector<ResultRow>& rows);
 
-/// Per method the mean over its scenes, weighted as the Middlebury V3 table does; numbers that some scene lacks are
-/// unknown. In order of first appearance; `scene` becomes "mean of N".
+/// Per kind of corruption and method the mean over its scenes, weighted as the Middlebury V3 table does; numbers that
+/// some scene lacks are unknown. In order of first appearance; `scene` becomes "mean of N" or "mean of N+KIND".
 std::vector<ResultRow> averageRows(const std::vector<ResultRow>& rows);
 
 /// The rows as an aligned text table, averages below.

@@ -27,9 +27,10 @@ namespace fs = std::filesystem;
 struct Task {
   SceneFiles files;
   std::string problem;
+  const Corruption* corruption = nullptr;  // none
 };
 
-std::vector<Task> collectTasks(const std::vector<std::string>& paths, const RunOptions& options) {
+std::vector<Task> findTasks(const std::vector<std::string>& paths) {
   std::vector<Task> all;
   for (const std::string& path : paths) {
     try {
@@ -41,9 +42,22 @@ std::vector<Task> collectTasks(const std::vector<std::string>& paths, const RunO
     }
   }
   std::set<std::string> names;
+  for (Task& task : all) {
+    if (!names.insert(task.files.name).second) task.problem = task.files.left + ": another scene has its name";
+  }
+  return all;
+}
+
+/// This shard's part of all scenes in all their kinds; what has a problem stands there once.
+std::vector<Task> chooseTasks(const std::vector<Task>& scenes, const RunOptions& options) {
+  std::vector<Task> all;
+  for (const Task& scene : scenes) {
+    if (options.corruptions.empty() || !scene.problem.empty()) all.push_back(scene);
+    if (!scene.problem.empty()) continue;
+    for (const Corruption* corruption : options.corruptions) all.push_back({scene.files, "", corruption});
+  }
   std::vector<Task> own;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!names.insert(all[i].files.name).second) all[i].problem = all[i].files.left + ": another scene has its name";
     if (static_cast<int>(i) % options.shard_count == options.shard_index - 1) own.push_back(all[i]);
   }
   return own;
@@ -141,7 +155,7 @@ class Runner {
       const Task& task = tasks_[i];
       try {
         if (!task.problem.empty()) throw std::runtime_error(task.problem);
-        runScene(task.files, outcomes_[i]);
+        runScene(task, outcomes_[i]);
       } catch (...) {
         outcomes_[i].failures.push_back({task.files.name, describeCurrentException()});
         progress_.step(task.files.name + " failed", static_cast<int>(methods_.size()));
@@ -149,8 +163,9 @@ class Runner {
     }
   }
 
-  void runScene(const SceneFiles& files, RunOutcome& outcome) {
-    const Scene scene = readScene(files);
+  void runScene(const Task& task, RunOutcome& outcome) {
+    Scene scene = readScene(task.files);
+    if (task.corruption != nullptr) corrupt(scene, *task.corruption);
     const std::string content = contentOf(scene);
     if (!options_.folder.empty()) writeScenePictures(options_.folder, scene);
     for (std::size_t m = 0; m < methods_.size(); ++m) {
@@ -214,7 +229,7 @@ std::string shardTableName(int index, int count) {
 
 RunOutcome runMethods(const std::vector<std::string>& scene_paths, const std::vector<Method>& methods,
                       const RunOptions& options) {
-  return Runner(methods, options, collectTasks(scene_paths, options)).run();
+  return Runner(methods, options, chooseTasks(findTasks(scene_paths), options)).run();
 }
 
 }  // namespace fdp_stereo

@@ -5,15 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/corruption.hpp"
 #include "evaluation/method.hpp"
 #include "evaluation/result.hpp"
 
 namespace fdp_stereo {
 
 struct RunOptions {
-  bool all_pixels = false;  ///< score occluded pixels too
-  int jobs = 1;             ///< scenes at once; above 1 CPU time and memory are unknown
-  int shard_index = 1;      ///< of shard_count: this run does every shard_count-th scene
+  bool all_pixels = false;                     ///< score occluded pixels too
+  std::vector<const Corruption*> corruptions;  ///< each makes a scene of its own of every scene; empty = none
+  int jobs = 1;                                ///< scenes at once; above 1 CPU time and memory are unknown
+  int shard_index = 1;                         ///< of shard_count: this run does every shard_count-th scene
   int shard_count = 1;
   std::string folder;  ///< pictures and tables go here; "" = none
 };

@@ -30,6 +30,7 @@ TEST(Evaluation, HandWorkedCase) {
   EXPECT_DOUBLE_EQ(errors.density, 100.0 * 5 / 7);
   EXPECT_DOUBLE_EQ(errors.sparse_bad_half, 100.0 * 2 / 5);
   EXPECT_NEAR(errors.average_px, (0.0 + 0.2 + 0.5 + 3.0 + 100.0) / 5, 1e-6);
+  EXPECT_DOUBLE_EQ(errors.a95_px, 100.0);
 }
 
 TEST(Evaluation, EqualsThePlainReference) {
@@ -54,6 +55,7 @@ TEST(Evaluation, EqualsThePlainReference) {
       EXPECT_NEAR(fast.density, slow.density, 1e-9);
       EXPECT_NEAR(fast.sparse_bad_half, slow.sparse_bad_half, 1e-9);
       EXPECT_NEAR(fast.average_px, slow.average_px, 1e-9);
+      EXPECT_DOUBLE_EQ(fast.a95_px, slow.a95_px);
     }
   }
 }
@@ -66,6 +68,16 @@ TEST(Evaluation, D1ForgivesFivePercentOfLargeDisparities) {
   EXPECT_DOUBLE_EQ(errors.d1, 50.0);
 }
 
+TEST(Evaluation, A95LeavesOutFivePercentOfTheAnswers) {
+  cv::Mat disparity(1, 40, CV_32FC1);
+  for (int x = 0; x < 40; ++x) disparity.at<float>(0, x) = static_cast<float>(40 - x);  // errors 40 down to 1
+  const cv::Mat truth(1, 40, CV_32FC1, cv::Scalar(0.0));
+  EXPECT_DOUBLE_EQ(evaluateDisparity(disparity, truth, cv::Mat()).a95_px, 38.0);
+  disparity.colRange(0, 20) = kNone;
+  EXPECT_DOUBLE_EQ(evaluateDisparity(disparity, truth, cv::Mat()).a95_px, 19.0);
+  EXPECT_DOUBLE_EQ(evaluateDisparity(disparity.colRange(39, 40), truth.colRange(39, 40), cv::Mat()).a95_px, 1.0);
+}
+
 TEST(Evaluation, InfinityIsNoAnswerAndNoTruth) {
   const float infinity = std::numeric_limits<float>::infinity();
   const cv::Mat truth = (cv::Mat_<float>(1, 2) << 4.0F, infinity);
@@ -74,6 +86,7 @@ TEST(Evaluation, InfinityIsNoAnswerAndNoTruth) {
   EXPECT_DOUBLE_EQ(errors.density, 0.0);
   EXPECT_DOUBLE_EQ(errors.sparse_bad_half, 100.0);
   EXPECT_DOUBLE_EQ(errors.average_px, 100.0);
+  EXPECT_DOUBLE_EQ(errors.a95_px, 100.0);
 }
 
 TEST(Evaluation, RefusesWhatItCannotCompare) {
@@ -90,12 +103,15 @@ TEST(Average, WeighsTheScenes) {
   DisparityErrors first;
   first.bad[0] = 10.0;
   first.average_px = 1.0;
+  first.a95_px = 2.0;
   DisparityErrors second;
   second.bad[0] = 40.0;
   second.average_px = 4.0;
+  second.a95_px = 5.0;
   const DisparityErrors mean = averageErrors({first, second}, {1.0, 0.5});
   EXPECT_DOUBLE_EQ(mean.bad[0], 20.0);
   EXPECT_DOUBLE_EQ(mean.average_px, 2.0);
+  EXPECT_DOUBLE_EQ(mean.a95_px, 3.0);
   EXPECT_THROW(averageErrors({}, {}), std::invalid_argument);
   EXPECT_THROW(averageErrors({first}, {0.0}), std::invalid_argument);
   EXPECT_THROW(averageErrors({first}, {1.0, 1.0}), std::invalid_argument);
@@ -105,6 +121,7 @@ TEST(Average, MiddleburyHalvesFiveScenes) {
   EXPECT_DOUBLE_EQ(middleburyWeight("Playtable"), 0.5);
   EXPECT_DOUBLE_EQ(middleburyWeight("Piano"), 1.0);
   EXPECT_DOUBLE_EQ(middleburyWeight("PianoL"), 0.5);
+  EXPECT_DOUBLE_EQ(middleburyWeight("PianoL+noise"), 0.5);
 }
 
 TEST(ErrorColors, TellErrorsApart) {

@@ -42,6 +42,11 @@ inline DisparityErrors evaluateDisparity(const cv::Mat& disparity, const cv::Mat
   double sum = 0.0;
   for (const float e : errors) sum += std::min(e, 100.0F);
   result.average_px = sum / answered;
+  std::sort(errors.begin(), errors.end());
+  std::size_t within = 0;  // pixels off by no more than the smallest errors
+  while (20 * ++within < 19 * errors.size()) {
+  }
+  result.a95_px = std::min(errors[within - 1], 100.0F);
   return result;
 }
 

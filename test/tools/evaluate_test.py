@@ -28,6 +28,7 @@ def score(disparity, truth, region):
     figures["density"] = 100.0 * len(known) / len(error)
     figures["sparse_bad_0.5"] = 100.0 * np.mean(known > 0.5)
     figures["average_px"] = np.minimum(known, 100.0).mean()
+    figures["a95_px"] = np.sort(known)[int(np.ceil(0.95 * len(known))) - 1]
     return figures
 
 
@@ -87,6 +88,9 @@ class EvaluateTest(unittest.TestCase):
         self.assertIn("one/im1.png: missing", err)
         self.assertIn("disp0GT.pfm: truncated", err)
         self.assertIn("none: no such folder", err)
+        _, again = self.evaluate(*self.scenes, self.path("none"), "--corrupt", "none", "--corrupt", "noise", code=1)
+        for problem in ("one/im1.png: missing", "disp0GT.pfm: truncated", "none: no such folder"):
+            self.assertEqual(again.count(problem), 1, "once, not with each kind")
         self.assertEqual(set(read_csv(self.table)), {("Playtable", "fast")})
         self.assertIn("mean of 1", out)
 
@@ -99,6 +103,48 @@ class EvaluateTest(unittest.TestCase):
         for method in ("sgbm_hh", "sgbm_3way", "bm"):
             self.assertLess(float(rows["one", method]["bad_2"]), 40.0)
             self.assertGreater(float(rows["one", method]["time_ms"]), 0.0)
+
+    def test_scenes_may_follow_any_option(self):
+        self.evaluate("--corrupt", "rows", "--preset", "fast", "--variant", "wta=fast,optimizer.type=winner_takes_all",
+                      "--set", "semi_global.p1=0.5", "--csv", self.table, *self.scenes[:2])
+        self.assertEqual(set(read_csv(self.table)),
+                         {(scene, method) for scene in ("one+rows", "two+rows") for method in ("fast", "wta")})
+
+    def test_corrupted_scenes_stand_beside_the_others(self):
+        kinds = ("none", "noise", "dark", "gain", "gamma", "blur", "jpeg", "vignette", "saturation", "rows", "dirt")
+        out, _ = self.evaluate(*self.scenes, "--peers", "--corrupt", "all", "--csv", self.table)
+        rows = read_csv(self.table)
+        name = {kind: "" if kind == "none" else "+" + kind for kind in kinds}
+        self.assertEqual({scene for scene, _ in rows},
+                         {scene + end for scene in ("one", "two", "Playtable") for end in name.values()})
+        weights = {"one": 1.0, "two": 1.0, "Playtable": 0.5}
+        table = [line.split() for line in out.split("bad 1 / that of sgbm_hh\n")[1].splitlines()]
+        self.assertEqual(table[0], ["images", "fast", "sgbm_3way", "bm"])
+        self.assertEqual([line[0] for line in table[1:]], list(kinds))
+        for kind, *ratios in table[1:]:
+            mean = {method: sum(weight * float(rows[scene + name[kind], method]["bad_1"])
+                                for scene, weight in weights.items()) for method in (*table[0][1:], "sgbm_hh")}
+            for method, ratio in zip(table[0][1:], ratios):
+                self.assertAlmostEqual(float(ratio), mean[method] / mean["sgbm_hh"], delta=0.006)
+        self.assertIn("mean of 3+noise", out)
+        self.evaluate(*self.scenes, "--corrupt", "noise", "--corrupt", "none", "--corrupt", "NOISE", "--csv", self.table, "--jobs", 3)
+        again = read_csv(self.table)
+        self.assertEqual(len(again), 6)
+        for key, row in again.items():
+            for figure in (*BAD, "a95_px"):
+                self.assertEqual(row[figure], rows[key][figure], key)
+
+    def test_a_report_shows_corrupted_images(self):
+        for shard in ("1/2", "2/2"):
+            self.evaluate(self.scenes[0], "--peers", "--corrupt", "none", "--corrupt", "dark", "--corrupt", "rows",
+                          "--report", self.report, "--shard", shard)
+        out, _ = self.evaluate("--merge", "--report", self.report)
+        self.assertIn("bad 1 / that of sgbm_hh", out)
+        clean, dark = (cv2.imread(os.path.join(self.report, scene, "left.png")) for scene in ("one", "one+dark"))
+        self.assertAlmostEqual(dark.mean() / clean.mean(), 0.25, delta=0.02)
+        with open(os.path.join(self.report, "index.html")) as file:
+            page = file.read()
+        self.assertRegex(page, r'"robustness":{"kinds":\[{"images":"none","ratios":\[[\d.]+,[\d.]+,[\d.]+\]}')
 
     def limited(self, limit_mb, *arguments):
         return subprocess.run(
@@ -244,7 +290,7 @@ class EvaluateTest(unittest.TestCase):
                                 ("two methods", ["x", "--preset", "fast", "--preset", "fast"]),
                                 ("name of a method", ["x", "--variant", "a b=fast"]),
                                 ("1 <= i <= n", ["x", "--shard", "3/2"]), ("--report", ["x", "--shard", "1/2"]),
-                                ("--jobs", ["x", "--jobs", "0"]), ("--report", ["--merge"])):
+                                ("--jobs", ["x", "--jobs", "0"]), ("'snow': must be one of none, noise", ["x", "--corrupt", "snow"]), ("--report", ["--merge"])):
             _, err = self.evaluate(*arguments, code=2)
             self.assertIn(part, err)
             self.assertEqual(err.count("\n"), 1, err)
