@@ -36,7 +36,7 @@ void BM_quasiDenseMatching(benchmark::State& state) {
   const CostVolume volume = benchmarkVolume(params);
   SemiGlobalMatcher matcher;
   for (auto _ : state) {
-    quasiDenseSeeds(volume, benchmarkPair().left_grey, params.quasi_dense, params.semi_global, matcher);
+    matchRoughly(volume, benchmarkPair().left_grey, params.quasi_dense, params.semi_global, matcher);
   }
   setBytesMoved(state, volume.bytes() / params.quasi_dense.row_step * 6);
 }
@@ -48,8 +48,9 @@ void BM_quasiDensePropagation(benchmark::State& state) {
   omp_set_num_threads(static_cast<int>(state.range(0)));
   CostVolume volume = benchmarkVolume(params);
   SemiGlobalMatcher matcher;
-  const Seeds seeds =
-      quasiDenseSeeds(volume, benchmarkPair().left_grey, params.quasi_dense, params.semi_global, matcher);
+  const cv::Mat& guide = benchmarkPair().left_grey;
+  const RoughDisparity rough = matchRoughly(volume, guide, params.quasi_dense, params.semi_global, matcher);
+  const Seeds seeds = quasiDenseSeeds(rough, guide.size(), params.quasi_dense);
   for (auto _ : state) propagateDisparity(seeds, benchmarkPair().left, surfacesOf(params.quasi_dense), volume);
   setBytesMoved(state, 2 * volume.bytes());
 }

@@ -50,13 +50,20 @@ class MatchingCost {
 
   /// Fills the volume. Raw costs are rounded and at most round(max / scale.step).
   /// Where x - d leaves the right image the nearest valid cost along d is repeated.
+  /// With a row_step, of the rows alone that SemiGlobalMatcher::match() takes then.
   /// Throws std::invalid_argument for a step with which the largest cost does not fit the depth.
   void compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params, const CostScale& scale,
-               CostVolume& volume);
+               CostVolume& volume, int row_step = 1);
+  /// The volume of search tiles, for CostBorder::kRepeatDisparity, from compute()'s of some rows of the same pair.
+  void complete(const StereoPair& pair, const MatchingCostParams& params, const SearchTiles& tiles,
+                const CostVolume& rows, int row_step, CostVolume& volume);
 
   struct Source;
 
  private:
+  void fill(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale, int row_step,
+            const CostVolume* known, CostVolume& volume);
+
   std::unique_ptr<Source> source_;
 };
 

@@ -87,7 +87,7 @@ class Pipeline {
   void compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel, StageClock& clock,
                PipelineResult& result);
   RowAlignment alignPair(const FeatureMatches& matches, int given_rows, Frame& frame);
-  void buildSeeds(Frame& frame, Seeds external, PipelineResult& result);
+  void buildSeeds(Frame& frame, Seeds external, const CostVolume& rows, PipelineResult& result);
   double spreadSeeds(const PipelineResult& result, const cv::Mat& view, bool mirrored, DisparityAxis axis,
                      CostVolume& volume) const;
   void optimize(Frame& frame, PipelineResult& result, const std::atomic<bool>* cancel);

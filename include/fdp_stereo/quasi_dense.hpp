@@ -24,11 +24,19 @@ struct QuasiDenseParams {
 /// What spreads the seeds: the surface form of stage 6.
 DisparityPropagationParams surfacesOf(const QuasiDenseParams& params);
 
-/// Semi-global matching over some rows of the volume; disparities that pass a left-right check and lie in
-/// no speckle become seeds, each the median of the 7 pixels of its row around it; seeds that fewer than 2 of the 8
-/// around them agree with (2 px) are left out. Sorted by (y, x), source kQuasiDense. guide and penalties
-/// are those of SemiGlobalMatcher::match(), which throws.
-Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
-                      const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher);
+/// A first matching of every row_step-th row, CV_32FC1, NaN = none.
+struct RoughDisparity {
+  cv::Mat winners;  ///< as they are
+  cv::Mat known;    ///< those that pass a left-right check and lie in no speckle
+};
+
+/// volume: of the image, or of these rows alone. guide and penalties are those of SemiGlobalMatcher::match(), which
+/// throws.
+RoughDisparity matchRoughly(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
+                            const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher);
+
+/// Known disparities become seeds, each the median of the 7 pixels of its row around it; seeds that fewer than 2 of the
+/// 8 around them agree with (2 px) are left out. Sorted by (y, x), source kQuasiDense. size: of the image.
+Seeds quasiDenseSeeds(const RoughDisparity& rough, cv::Size size, const QuasiDenseParams& params);
 
 }  // namespace fdp_stereo

@@ -22,6 +22,7 @@
 #include "images/temporal_average.hpp"
 #include "images/view_masks.hpp"
 #include "refinement/view_agreement.hpp"
+#include "seeds/search_tiles.hpp"
 #include "simd/simd.hpp"
 
 namespace fdp_stereo {
@@ -69,6 +70,16 @@ CostScale costScale(const PipelineParams& params) {
   return planes ? fitCostScale(largest, penalties, kAllLevels) : fitCostScale(largest, penalties);
 }
 
+constexpr int kFewestForTiles = 97;  ///< disparities; below, tiles save less than they cost
+constexpr int kRowsForTiles = 4;     ///< a tile must not be told from fewer rows
+
+/// Is it worth while to match some rows first, and of the others only what can be there?
+bool searchesTiles(const PipelineParams& params, DisparityRange search) {
+  return params.optimizer == OptimizerType::kSemiGlobal && params.quasi_dense.enabled &&
+         params.quasi_dense.row_step > 1 && params.quasi_dense.row_step <= SearchTiles::kRows / kRowsForTiles &&
+         params.matching_cost.border == CostBorder::kRepeatDisparity && search.count >= kFewestForTiles;
+}
+
 /// Bytes that the optimiser and the quasi-dense matching need beside the volume for every cost in it.
 double bytesBeside(const PipelineParams& params) {
   double bytes = params.optimizer == OptimizerType::kWinnerTakesAll ? 0.0 : SemiGlobalMatcher::kBytesPerCost;
@@ -82,7 +93,9 @@ double bytesBeside(const PipelineParams& params) {
 void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange search) {
   const double pixels = static_cast<double>(size.width) * size.height;
   const double cells = pixels * (search.count + CostVolume::kPadding);
-  const double own = costScale(params).depth == CostVolume::Depth::kU8 ? 1.0 : 2.0;
+  const double rows =
+      searchesTiles(params, search) ? 1.0 / params.quasi_dense.row_step : 0.0;  // at most beside the rest
+  const double own = (costScale(params).depth == CostVolume::Depth::kU8 ? 1.0 : 2.0) * (1.0 + rows);
   const double mb = cells * (own + bytesBeside(params)) / 1e6;
   if (mb <= params.max_memory_mb) return;
   throw std::invalid_argument(
@@ -172,6 +185,7 @@ struct Pipeline::State {
   Quality last_quality = Quality::kNone;
   RowAlignmentAccumulator row_alignment;
   MatchingCost matching_cost;
+  CostVolume rows;  ///< that are matched first, where tiles are searched
   CostVolume volume;
   SemiGlobalMatcher semi_global;
 };
@@ -185,6 +199,7 @@ struct Pipeline::Frame {
   cv::Mat blind;    ///< CV_8UC1, 255 where the left view holds no information
   cv::Mat vouched;  ///< CV_8UC1, 255 where another sensor has seen something; empty without one
   ViewMasks masks;
+  RoughDisparity rough;
   OptimizerOutput optimized;
 };
 
@@ -283,7 +298,7 @@ PipelineResult Pipeline::repeat(PipelineResult now) const {
 void Pipeline::compute(const StereoPair& given, const Seeds& external, const std::atomic<bool>* cancel,
                        StageClock& clock, PipelineResult& result) {
   const Scaling scaling(given.left.size(), params_.scale);
-  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}, {}};
+  Frame frame{scaling.shrink(given), {}, scaling.shrink(params_.search), {}, {}, {}, {}, {}, {}};
   frame.masks = shrinkMasks(state_->masks, frame.pair.left.size());
   checkMemory(params_, frame.pair.left.size(), frame.search);
   frame.blind = blindPixels(frame.pair.left_grey);
@@ -300,11 +315,20 @@ void Pipeline::compute(const StereoPair& given, const Seeds& external, const std
   clock.done("row_alignment");
 
   frame.cost = costViews(frame.pair, params_.matching_cost);
-  state_->matching_cost.compute(frame.cost.pair, frame.search, frame.cost.params, costScale(params_), state_->volume);
+  const bool tiled = searchesTiles(params_, frame.search);
+  const int row_step = tiled ? params_.quasi_dense.row_step : 1;
+  CostVolume& rows = tiled ? state_->rows : state_->volume;
+  state_->matching_cost.compute(frame.cost.pair, frame.search, frame.cost.params, costScale(params_), rows, row_step);
   clock.done("matching_cost");
 
-  buildSeeds(frame, scaling.shrink(external), result);
+  buildSeeds(frame, scaling.shrink(external), rows, result);
   clock.done("sparse_disparity");
+
+  if (tiled) {
+    const SearchTiles tiles = findSearchTiles(frame.rough, result.seeds, frame.guide.size(), frame.search, row_step);
+    state_->matching_cost.complete(frame.cost.pair, frame.cost.params, tiles, rows, row_step, state_->volume);
+    clock.done("matching_cost");
+  }
 
   result.propagated_share = spreadSeeds(result, frame.pair.left, false, {frame.search.min, 1}, state_->volume);
   clock.done("disparity_propagation");
@@ -332,7 +356,7 @@ RowAlignment Pipeline::alignPair(const FeatureMatches& matches, int given_rows, 
 }
 
 /// Seeds of the features and of other sensors, and those of a rough first matching.
-void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) {
+void Pipeline::buildSeeds(Frame& frame, Seeds external, const CostVolume& rows, PipelineResult& result) {
   dropMasked({frame.masks.left, {}}, external);  // another sensor sees behind what hides it from the right view
 
   const bool features = params_.sparse_disparity.features;
@@ -352,8 +376,8 @@ void Pipeline::buildSeeds(Frame& frame, Seeds external, PipelineResult& result) 
   if (!frame.vouched.empty()) frame.blind.setTo(0, frame.vouched);
   if (!frame.masks.left.empty()) frame.blind.setTo(255, frame.masks.left);
   if (!params_.quasi_dense.enabled) return;
-  result.quasi_dense_seeds =
-      quasiDenseSeeds(state_->volume, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
+  frame.rough = matchRoughly(rows, frame.guide, params_.quasi_dense, params_.semi_global, state_->semi_global);
+  result.quasi_dense_seeds = quasiDenseSeeds(frame.rough, frame.guide.size(), params_.quasi_dense);
   dropMasked(frame.masks, result.quasi_dense_seeds);
 }
 

@@ -69,10 +69,10 @@ TEST(Arguments, QuasiDenseStepsAreAtLeastOne) {
   SemiGlobalMatcher matcher;
   QuasiDenseParams params;
   params.row_step = 0;
-  EXPECT_THROW(quasiDenseSeeds(volume, kImage, params, {}, matcher), std::invalid_argument);
+  EXPECT_THROW(matchRoughly(volume, kImage, params, {}, matcher), std::invalid_argument);
   params = {};
   params.spacing_px = 0;
-  EXPECT_THROW(quasiDenseSeeds(volume, kImage, params, {}, matcher), std::invalid_argument);
+  EXPECT_THROW(matchRoughly(volume, kImage, params, {}, matcher), std::invalid_argument);
 }
 
 }  // namespace

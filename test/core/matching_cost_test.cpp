@@ -7,6 +7,7 @@
 #include "reference/instruction_sets.hpp"
 #include "reference/matching_cost_reference.hpp"
 #include "reference/random_images.hpp"
+#include "reference/random_volume.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -44,7 +45,31 @@ void expectEqual(const CostVolume& a, const CostVolume& b) {
   ASSERT_EQ(a.bytes(), b.bytes());
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {
-      for (int i = 0; i < a.stride(); ++i) ASSERT_EQ(a.raw(y, x, i), b.raw(y, x, i)) << x << ", " << y << ", " << i;
+      for (int i = 0; i < a.span(y, x).count; ++i)
+        ASSERT_EQ(a.raw(y, x, i), b.raw(y, x, i)) << x << ", " << y << ", " << i;
+    }
+  }
+}
+
+TEST(MatchingCost, OfSearchTilesIsThatOfTheWholeVolume) {
+  const cv::Mat left = reference::noise(37, 75, CV_8UC3, 1), right = reference::noise(37, 75, CV_8UC3, 2);
+  const StereoPair pair = prepareImages(left, right);
+  const DisparityRange range{-5, 60};
+  const SearchTiles tiles = reference::randomTiles(left.size(), range, 7);
+  for (const auto type : {MatchingCostType::kRhoCensus, MatchingCostType::kCensus, MatchingCostType::kRho,
+                          MatchingCostType::kBirchfieldTomasi, MatchingCostType::kLearned}) {
+    for (const int scales : {1, 2}) {
+      for (const int bits : {8, 16}) {
+        const MatchingCostParams params = paramsOf(type, scales);
+        const CostVolume whole = volumeOf(pair, range, params, bits);
+        CostVolume rows, searched;
+        MatchingCost().compute(pair, range, params, scaleOf(params, bits), rows, 4);
+        ASSERT_EQ(rows.height(), 9);
+        MatchingCost().complete(pair, params, tiles, rows, 4, searched);
+        expectEqual(searched, reference::searchedOf(whole, tiles));
+        MatchingCost().complete(pair, params, {}, rows, 4, searched);
+        expectEqual(searched, whole);
+      }
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <omp.h>
 #include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/io.hpp"
@@ -106,6 +107,46 @@ TEST(SemiGlobal, TheRightViewReadsTheSameSums) {
       const float right = output.disparity_right.at<float>(y, x);
       ASSERT_FALSE(std::isnan(right));
       ASSERT_EQ(sum(static_cast<int>(right) - range.min), smallest);
+    }
+  }
+}
+
+TEST(SemiGlobal, TilesThatHoldEverythingChangeNothing) {
+  for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
+    const DisparityRange range{-3, 40};
+    const CostVolume whole = fittingVolume(37, 75, range, depth, 21);
+    const SearchTiles all{std::vector<SearchTiles::Span>(9, {0, 48})};
+    const cv::Mat grey = reference::noise(37, 75, CV_8UC1, 22);
+    SemiGlobalParams params = testParams();
+    params.subpixel = SubpixelFit::kBlended;
+    const OptimizerOutput expected = optimize(whole, grey, params);
+    const OptimizerOutput actual = optimize(reference::searchedOf(whole, all), grey, params);
+    EXPECT_TRUE(reference::sameBits(actual.disparity_left, expected.disparity_left));
+    EXPECT_TRUE(reference::sameBits(actual.disparity_right, expected.disparity_right));
+    EXPECT_TRUE(reference::sameBits(actual.margin, expected.margin));
+  }
+}
+
+TEST(SemiGlobal, WinnersInTilesHaveTheSmallestSumsThere) {
+  for (const auto depth : {CostVolume::Depth::kU8, CostVolume::Depth::kU16}) {
+    for (const auto& [rows, cols] : {std::pair{1, 70}, {40, 3}, {37, 75}, {16, 32}}) {
+      const DisparityRange range{-3, 70};
+      const SearchTiles tiles = reference::randomTiles({cols, rows}, range, 5);
+      const CostVolume volume = reference::searchedOf(fittingVolume(rows, cols, range, depth, 21), tiles);
+      const cv::Mat grey = reference::noise(rows, cols, CV_8UC1, 22);
+      const std::vector<int> sums = reference::pathSums(volume, grey, testParams());
+      for (const int threads : {1, 2, 3, 8}) {
+        omp_set_num_threads(threads);
+        const OptimizerOutput output = optimize(volume, grey, testParams());
+        for (int p = 0; p < rows * cols; ++p) {
+          const int* begin = &sums[static_cast<std::size_t>(p) * range.count];
+          const float disparity = output.disparity_left.at<float>(p / cols, p % cols);
+          if (std::isnan(disparity)) continue;
+          ASSERT_EQ(static_cast<int>(disparity) - range.min, std::min_element(begin, begin + range.count) - begin)
+              << p % cols << ", " << p / cols;
+        }
+      }
+      omp_set_num_threads(omp_get_num_procs());
     }
   }
 }

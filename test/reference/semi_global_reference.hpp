@@ -13,6 +13,8 @@
 namespace fdp_stereo {
 namespace reference {
 
+constexpr int kNotSearched = 1 << 20;
+
 /// Sum over the paths of L_r(p, d) = C + min(L(d), L(d -+ 1) + P1, min L + P2) - min L (Hirschmueller 2008, eq. 13), in
 /// raw units, [(y * width + x) * count + d]; one path at a time, each pixel looked up anew from its predecessor.
 inline std::vector<int> pathSums(const CostVolume& volume, const cv::Mat& grey, const SemiGlobalParams& params) {
@@ -46,7 +48,9 @@ inline std::vector<int> pathSums(const CostVolume& volume, const cv::Mat& grey, 
             if (d > 0) best = std::min(best, before[d - 1] + p1);
             if (d + 1 < count) best = std::min(best, before[d + 1] + p1);
           }
-          path[at(x, y) + d] = volume.raw(y, x, d) + best - smallest;
+          const SearchTiles::Span span = volume.span(y, x);
+          const bool searched = d >= span.first && d < span.first + span.count;
+          path[at(x, y) + d] = searched ? volume.raw(y, x, d - span.first) + best - smallest : kNotSearched;
           sums[at(x, y) + d] += path[at(x, y) + d];
         }
       }

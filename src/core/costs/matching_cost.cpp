@@ -13,6 +13,7 @@
 #include "costs/image_planes.hpp"
 #include "images/colour.hpp"
 #include "parallel.hpp"
+#include "row_grid.hpp"
 #include "simd/cost_network_kernels.hpp"
 #include "simd/matching_cost_kernels.hpp"
 
@@ -272,56 +273,64 @@ struct PixelPlanes {
   int count, stride;
 };
 
-PixelPlanes planesAt(const CostSource& source, int x, int width, int stride, const RowScratch& scratch) {
-  PixelPlanes planes{{}, scratch.right.data() + width - 1 - x, source.left.count(), width + stride};
-  for (int c = 0; c < planes.count; ++c) planes.left[c] = scratch.left[static_cast<std::size_t>(c) * width + x];
+/// A pixel of a row, and which of its costs are made: `count` from index `first` on.
+struct CostPixel {
+  int x, width, stride;  ///< of the row; of all disparities
+  int first, count;
+
+  int length() const { return width + stride; }          ///< of the reversed right rows
+  int partner() const { return width - 1 - x + first; }  ///< in them, of the first cost
+};
+
+PixelPlanes planesAt(const CostSource& source, const CostPixel& at, const RowScratch& scratch) {
+  PixelPlanes planes{{}, scratch.right.data() + at.partner(), source.left.count(), at.length()};
+  for (int c = 0; c < planes.count; ++c) planes.left[c] = scratch.left[static_cast<std::size_t>(c) * at.width + at.x];
   return planes;
 }
 
 /// The costs of one pixel where they are made in bytes: from its planes and one scale of census bits.
-void byteCosts(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
-               int stride, std::uint8_t* costs) {
+void byteCosts(const CostSource& source, MatchingCostType type, const CostPixel& at, RowScratch& scratch,
+               std::uint8_t* costs) {
   const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
-  const PixelPlanes planes = planesAt(source, x, width, stride, scratch);
+  const PixelPlanes planes = planesAt(source, at, scratch);
   std::uint8_t* const rho = scratch.rho_costs.data();
   if (type == MatchingCostType::kBirchfieldTomasi) {
-    kernels.birchfieldTomasi(planes.left, planes.right, planes.stride, count, kMaxRhoUnits, scratch.rho.data());
-    kernels.thetaCosts(scratch.rho.data(), source.rho_theta, count, source.shift, rho);
+    kernels.birchfieldTomasi(planes.left, planes.right, planes.stride, at.count, kMaxRhoUnits, scratch.rho.data());
+    kernels.thetaCosts(scratch.rho.data(), source.rho_theta, at.count, source.shift, rho);
   } else if (planes.count > 0) {
-    kernels.differenceCosts(planes.left, planes.right, planes.count, planes.stride, source.rho_theta, count,
+    kernels.differenceCosts(planes.left, planes.right, planes.count, planes.stride, source.rho_theta, at.count,
                             source.shift, rho);
   }
-  kernels.addCensusCosts(scratch.left_bits.data() + x, width, scratch.right_bits.data() + width - 1 - x, width + stride,
-                         source.scales * censusBytes(source.census), count, source.census_costs, rho, costs);
+  kernels.addCensusCosts(scratch.left_bits.data() + at.x, at.width, scratch.right_bits.data() + at.partner(),
+                         at.length(), source.scales * censusBytes(source.census), at.count, source.census_costs, rho,
+                         costs);
 }
 
 /// The costs of one pixel by tables.
 template <typename T>
-void tableCosts(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
-                int stride, T* costs) {
+void tableCosts(const CostSource& source, MatchingCostType type, const CostPixel& at, RowScratch& scratch, T* costs) {
   const MatchingCostKernels& kernels = FDP_STEREO_SELECT(matchingCostKernels);
-  const PixelPlanes planes = planesAt(source, x, width, stride, scratch);
-  const int length = width + stride;
+  const PixelPlanes planes = planesAt(source, at, scratch);
   if (type == MatchingCostType::kBirchfieldTomasi) {
-    kernels.birchfieldTomasi(planes.left, planes.right, length, count, kMaxRhoUnits, scratch.rho.data());
+    kernels.birchfieldTomasi(planes.left, planes.right, planes.stride, at.count, kMaxRhoUnits, scratch.rho.data());
   } else if (planes.count > 0) {
-    kernels.absoluteDifferences(planes.left, planes.right, planes.count, length, count, kMaxRhoUnits,
+    kernels.absoluteDifferences(planes.left, planes.right, planes.count, planes.stride, at.count, kMaxRhoUnits,
                                 scratch.rho.data());
   }
   for (std::ptrdiff_t i = 0; i < source.scales; ++i) {
-    kernels.hamming(scratch.left_codes[i * width + x], scratch.right_codes.data() + i * length + width - 1 - x, count,
-                    source.bit_weights[i], i == 0, scratch.census.data());
+    kernels.hamming(scratch.left_codes[i * at.width + at.x],
+                    scratch.right_codes.data() + i * at.length() + at.partner(), at.count, source.bit_weights[i],
+                    i == 0, scratch.census.data());
   }
-  combine(kernels, source, scratch, count, costs);
+  combine(kernels, source, scratch, at.count, costs);
 }
 
 template <typename T>
-void costsOfPixel(const CostSource& source, MatchingCostType type, int x, int width, RowScratch& scratch, int count,
-                  int stride, T* costs) {
+void costsOfPixel(const CostSource& source, MatchingCostType type, const CostPixel& at, RowScratch& scratch, T* costs) {
   if constexpr (sizeof(T) == 1) {
-    if (source.in_bytes) return byteCosts(source, type, x, width, scratch, count, stride, costs);
+    if (source.in_bytes) return byteCosts(source, type, at, scratch, costs);
   }
-  tableCosts(source, type, x, width, scratch, count, stride, costs);
+  tableCosts(source, type, at, scratch, costs);
 }
 
 void mix(const CostNetworkKernels& kernels, const std::uint16_t* values, LearnedMix share, int count,
@@ -335,13 +344,13 @@ void mix(const CostNetworkKernels& kernels, const std::uint16_t* values, Learned
 
 /// Mixes the learned costs of one pixel into the others.
 template <typename T>
-void addLearned(const CostSource& source, int x, int width, RowScratch& scratch, int count, int stride, T* costs) {
+void addLearned(const CostSource& source, const CostPixel& at, RowScratch& scratch, T* costs) {
   const CostNetworkKernels& kernels = FDP_STEREO_SELECT(costNetworkKernels);
   const int channels = CostNetwork::builtIn().length();
-  kernels.dissimilarities(scratch.left_descriptors.data() + static_cast<std::ptrdiff_t>(x) * channels,
-                          scratch.right_descriptors.data() + 2 * (width - 1 - x), channels / 2, width + stride, count,
-                          scratch.unlikeness.data());
-  mix(kernels, scratch.unlikeness.data(), source.learned, count, costs);
+  kernels.dissimilarities(scratch.left_descriptors.data() + static_cast<std::ptrdiff_t>(at.x) * channels,
+                          scratch.right_descriptors.data() + std::ptrdiff_t{2} * at.partner(), channels / 2,
+                          at.length(), at.count, scratch.unlikeness.data());
+  mix(kernels, scratch.unlikeness.data(), source.learned, at.count, costs);
 }
 
 /// Repeats the nearest valid cost along d where x - d is outside the right image.
@@ -371,20 +380,51 @@ void repeatPixels(int y, CostVolume& volume) {
   }
 }
 
+/// Row y of the images into row `row` of the volume.
 template <typename T>
-void fillVolume(const CostSource& source, const MatchingCostParams& params, CostVolume& volume) {
+void fillRow(const CostSource& source, const MatchingCostParams& params, int y, int row, RowScratch& scratch,
+             CostVolume& volume) {
   const int width = volume.width();
+  loadRow(source, y, width, volume, scratch);
+  for (int x = 0; x < width; ++x) {
+    const SearchTiles::Span span = volume.span(row, x);
+    const CostPixel at{x, width, volume.stride(), span.first, volume.searched(span)};
+    T* costs = volume.at<T>(row, x);
+    costsOfPixel(source, params.type, at, scratch, costs);
+    if (source.learned.share > 0) addLearned(source, at, scratch, costs);
+    repeatBorder(costs, x, width, {volume.range().min + at.first, at.count}, span.count,
+                 static_cast<T>(volume.maxRaw()));
+  }
+  if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(row, volume);
+}
+
+template <typename T>
+void copyRow(const CostVolume& from, int from_row, int row, CostVolume& volume) {
+  for (int x = 0; x < volume.width(); ++x) {
+    const SearchTiles::Span span = volume.span(row, x);
+    std::copy_n(from.at<T>(from_row, x) + span.first, span.count, volume.at<T>(row, x));
+  }
+}
+
+template <typename T>
+void fillVolume(const CostSource& source, const MatchingCostParams& params, const RowGrid& rows,
+                const CostVolume* known, CostVolume& volume) {
   const auto makeScratch = [] { return RowScratch{}; };
-  parallelFor(volume.height(), makeScratch, [&](int y, RowScratch& scratch) {
-    loadRow(source, y, width, volume, scratch);
-    for (int x = 0; x < width; ++x) {
-      T* costs = volume.at<T>(y, x);
-      costsOfPixel(source, params.type, x, width, scratch, volume.range().count, volume.stride(), costs);
-      if (source.learned.share > 0) addLearned(source, x, width, scratch, volume.range().count, volume.stride(), costs);
-      repeatBorder(costs, x, width, volume.range(), volume.stride(), static_cast<T>(volume.maxRaw()));
-    }
-    if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(y, volume);
+  parallelFor(volume.height(), makeScratch, [&](int row, RowScratch& scratch) {
+    if (known == nullptr) return fillRow<T>(source, params, rows.imageRow(row), row, scratch, volume);
+    if (rows.takes(row)) return copyRow<T>(*known, rows.rowOf(row), row, volume);
+    fillRow<T>(source, params, row, row, scratch, volume);
   });
+}
+
+int largestRaw(const MatchingCostParams& params, const CostScale& scale) {
+  const int max_raw = static_cast<int>(std::lround(maxMatchingCost(params) / scale.step));
+  const bool bytes = scale.depth == CostVolume::Depth::kU8;
+  if (!(scale.step > 0.0F) || max_raw > (bytes ? 255 : 65535)) {
+    throw std::invalid_argument("matching cost step " + std::to_string(scale.step) + ": the largest cost must fit " +
+                                (bytes ? "8" : "16") + " bits");
+  }
+  return max_raw;
 }
 
 }  // namespace
@@ -400,19 +440,27 @@ MatchingCost::MatchingCost(MatchingCost&&) noexcept = default;
 MatchingCost& MatchingCost::operator=(MatchingCost&&) noexcept = default;
 
 void MatchingCost::compute(const StereoPair& pair, DisparityRange range, const MatchingCostParams& params,
-                           const CostScale& scale, CostVolume& volume) {
-  const int max_raw = static_cast<int>(std::lround(maxMatchingCost(params) / scale.step));
-  const bool bytes = scale.depth == CostVolume::Depth::kU8;
-  if (!(scale.step > 0.0F) || max_raw > (bytes ? 255 : 65535)) {
-    throw std::invalid_argument("matching cost step " + std::to_string(scale.step) + ": the largest cost must fit " +
-                                (bytes ? "8" : "16") + " bits");
-  }
-  volume.create(pair.left.rows, pair.left.cols, range, scale.depth, scale.step, max_raw);
+                           const CostScale& scale, CostVolume& volume, int row_step) {
+  const RowGrid rows(pair.left.rows, row_step);
+  volume.create(rows.count, pair.left.cols, range, scale.depth, scale.step, largestRaw(params, scale));
+  fill(pair, params, scale, row_step, nullptr, volume);
+}
+
+void MatchingCost::complete(const StereoPair& pair, const MatchingCostParams& params, const SearchTiles& tiles,
+                            const CostVolume& rows, int row_step, CostVolume& volume) {
+  const CostScale scale{rows.depth(), rows.step()};
+  volume.create(pair.left.rows, pair.left.cols, rows.range(), scale.depth, scale.step, rows.maxRaw(), tiles);
+  fill(pair, params, scale, row_step, &rows, volume);
+}
+
+void MatchingCost::fill(const StereoPair& pair, const MatchingCostParams& params, const CostScale& scale, int row_step,
+                        const CostVolume* known, CostVolume& volume) {
+  const RowGrid rows(pair.left.rows, row_step);
   source_->load(pair, params, scale);
-  if (bytes) {
-    fillVolume<std::uint8_t>(*source_, params, volume);
+  if (scale.depth == CostVolume::Depth::kU8) {
+    fillVolume<std::uint8_t>(*source_, params, rows, known, volume);
   } else {
-    fillVolume<std::uint16_t>(*source_, params, volume);
+    fillVolume<std::uint16_t>(*source_, params, rows, known, volume);
   }
   source_->release();
 }

@@ -13,12 +13,13 @@ constexpr std::uint16_t kNone = 65535;
 }  // namespace
 
 DisparitySelection::DisparitySelection(const CostVolume& volume, SubpixelFit fit, double uniqueness_ratio, int paths)
-    : range_(volume.range()),
+    : volume_(volume),
+      range_(volume.range()),
       width_(volume.width()),
-      stride_(volume.stride()),
       fit_(fit),
       uniqueness_ratio_(uniqueness_ratio),
       margin_unit_(volume.step() / static_cast<float>(paths)),
+      cells_(width_),
       winners_(width_),
       right_best_(static_cast<std::size_t>(width_) + range_.count + std::abs(range_.min)),
       right_index_(right_best_.size()),
@@ -33,18 +34,24 @@ void DisparitySelection::createMaps(int height, int width, OptimizerOutput& outp
 
 /// Of the left pixels, and of the right ones: left x at index i meets right pixel x - min - i, stored at
 /// t = (width - 1 - x) + i + lead, so that t grows with i.
-void DisparitySelection::findWinners(const std::uint16_t* sums) {
+void DisparitySelection::findWinners(int y, const std::uint16_t* sums) {
   const SemiGlobalKernels& kernels = FDP_STEREO_SELECT(semiGlobalKernels);
   const int lead = std::max(range_.min, 0);
   std::fill(right_best_.begin(), right_best_.end(), kNone);
-  kernels.findWinners(sums, stride_, range_.count, width_, winners_.data());
-  for (int x = 0; x < width_; ++x) {
-    const std::uint16_t* costs = sums + static_cast<std::ptrdiff_t>(x) * stride_;
-    const auto [best, index, second] = winners_[x];
-    const int aside = inside(index) ? 1 : 0;
-    left_.set(x, costs[index - aside], best, costs[index + aside]);
-    const std::ptrdiff_t t = width_ - 1 - x + lead;
-    kernels.keepSmaller(costs, range_.count, right_best_.data() + t, right_index_.data() + t);
+  for (int left = 0; left < width_; left = volume_.tileRight(left)) {
+    const SearchTiles::Span span = volume_.span(y, left);
+    const int right = volume_.tileRight(left), count = volume_.searched(span);
+    kernels.findWinners(sums, span.count, count, right - left, &winners_[left]);
+    for (int x = left; x < right; ++x, sums += span.count) {
+      cells_[x] = {sums, span.first, count};
+      auto& [best, index, second] = winners_[x];
+      const std::uint16_t* at = sums + index;
+      index = static_cast<std::uint16_t>(index + span.first);
+      const int aside = cells_[x].inside(index) ? 1 : 0;
+      left_.set(x, *(at - aside), best, *(at + aside));
+      const std::ptrdiff_t t = width_ - 1 - x + lead + span.first;
+      kernels.keepSmaller(sums, span.first, count, right_best_.data() + t, right_index_.data() + t);
+    }
   }
 }
 
@@ -60,16 +67,17 @@ void DisparitySelection::writeLeft(float* disparity, float* margin) {
 }
 
 /// The costs of a right pixel at neighbouring disparities are those of neighbouring left pixels.
-void DisparitySelection::writeRight(const std::uint16_t* sums, float* disparity) {
+void DisparitySelection::writeRight(float* disparity) {
   const int last = width_ - 1 - range_.min + std::max(range_.min, 0);
   for (int x = 0; x < width_; ++x) {
     const int t = last - x, index = right_index_[t], left = x + range_.min + index;
     const bool seen = right_best_[t] != kNone;
     disparity[x] = seen ? static_cast<float>(range_.min + index) : kInvalidDisparity;
-    const bool aside = seen && inside(index) && left > 0 && left + 1 < width_;
-    const std::uint16_t* best = aside ? sums + static_cast<std::ptrdiff_t>(left) * stride_ + index : &right_best_[t];
-    const std::ptrdiff_t step = aside ? stride_ + 1 : 0;
-    right_.set(x, *(best - step), *best, *(best + step));
+    const bool aside = seen && left > 0 && left + 1 < width_;
+    const std::uint16_t* before = aside ? cells_[left - 1].at(index - 1) : nullptr;
+    const std::uint16_t* after = aside ? cells_[left + 1].at(index + 1) : nullptr;
+    const bool both = before != nullptr && after != nullptr;
+    right_.set(x, both ? *before : right_best_[t], right_best_[t], both ? *after : right_best_[t]);
   }
   FDP_STEREO_SELECT(semiGlobalKernels)
       .subpixelOffsets(fit_, {right_.before.data(), right_.best.data(), right_.after.data()}, width_,
@@ -78,9 +86,9 @@ void DisparitySelection::writeRight(const std::uint16_t* sums, float* disparity)
 }
 
 void DisparitySelection::selectRow(int y, const std::uint16_t* sums, OptimizerOutput& output) {
-  findWinners(sums);
+  findWinners(y, sums);
   writeLeft(output.disparity_left.ptr<float>(y), output.margin.ptr<float>(y));
-  writeRight(sums, output.disparity_right.ptr<float>(y));
+  writeRight(output.disparity_right.ptr<float>(y));
 }
 
 }  // namespace fdp_stereo

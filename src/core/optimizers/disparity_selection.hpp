@@ -22,7 +22,7 @@ class DisparitySelection {
   /// Gives the output maps their size; call once, before the rows.
   static void createMaps(int height, int width, OptimizerOutput& output);
 
-  /// sums: width x stride summed costs of row y.
+  /// sums: summed costs of row y, laid out as the volume.
   void selectRow(int y, const std::uint16_t* sums, OptimizerOutput& output);
 
  private:
@@ -39,16 +39,28 @@ class DisparitySelection {
     }
   };
 
-  bool inside(int index) const { return index > 0 && index + 1 < range_.count; }
-  void findWinners(const std::uint16_t* sums);
-  void writeLeft(float* disparity, float* margin);
-  void writeRight(const std::uint16_t* sums, float* disparity);
+  /// Sums of a pixel, of so many disparities from an index on.
+  struct Cells {
+    const std::uint16_t* sums;
+    int first, count;
 
+    bool inside(int index) const { return index > first && index + 1 < first + count; }
+    const std::uint16_t* at(int index) const {
+      return index >= first && index < first + count ? sums + (index - first) : nullptr;
+    }
+  };
+
+  void findWinners(int y, const std::uint16_t* sums);
+  void writeLeft(float* disparity, float* margin);
+  void writeRight(float* disparity);
+
+  const CostVolume& volume_;
   DisparityRange range_;
-  int width_, stride_;
+  int width_;
   SubpixelFit fit_;
   double uniqueness_ratio_;
   float margin_unit_;  // cost per path of one raw unit
+  std::vector<Cells> cells_;
   std::vector<Winner> winners_;
   std::vector<std::uint16_t> right_best_;  // from right to left
   std::vector<std::uint16_t> right_index_;

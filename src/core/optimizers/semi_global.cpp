@@ -15,22 +15,11 @@
 #include "fdp_stereo/buffer.hpp"
 #include "fdp_stereo/cost_scale.hpp"
 #include "optimizers/disparity_selection.hpp"
+#include "row_grid.hpp"
 #include "simd/semi_global_kernels.hpp"
 
 namespace fdp_stereo {
 namespace {
-
-/// The rows of an image that take part: every step-th one.
-struct RowGrid {
-  int step = 1;
-  int first = 0;
-  int count = 0;
-
-  RowGrid(int height, int row_step) : step(row_step), first(std::min(row_step / 2, height - 1)) {
-    count = (height - 1 - first) / step + 1;
-  }
-  int imageRow(int row) const { return first + row * step; }
-};
 
 /// Penalties in raw units; P2 by the grey difference between two pixels.
 template <typename T>
@@ -55,8 +44,8 @@ void follow(const PathBundle<std::uint16_t>& bundle, int lines, PathSum sum) {
 
 /// Memory of one run; kept from pair to pair.
 struct PathMemory {
-  Buffer excess;    // of three paths: rows x width x stride
-  Buffer totals;    // u16, of a few rows: chunk x width x stride
+  Buffer excess;    // of three paths, laid out as the volume
+  Buffer totals;    // u16, of a few rows
   Buffer across;    // P2 between (x - 1, y) and (x, y): rows x (width + 1)
   Buffer down;      // P2 between (x, y - 1) and (x, y): (rows + 1) x width
   Buffer columns;   // two slots per column
@@ -65,7 +54,8 @@ struct PathMemory {
 };
 
 /// The paths of one run. Rows are independent of each other along rows, columns along columns, so that the threads
-/// share both; a few rows at a time go down and up again while they are in the cache.
+/// share both; a few rows at a time go down and up again while they are in the cache. A path goes tile by tile; what
+/// the tile before did not search costs a jump.
 template <typename T>
 class Paths {
  public:
@@ -76,12 +66,14 @@ class Paths {
         guide_(guide),
         penalties_(penalties),
         width_(volume.width()),
-        count_(volume.stride()),
-        slot_(static_cast<std::size_t>(count_) + 2 * kGuard),
+        slot_(static_cast<std::size_t>(volume.stride()) + 2 * kGuard),
         memory_(memory) {
     const std::size_t pixels = static_cast<std::size_t>(width_) * rows.count;
-    memory.excess.reserve(pixels * count_ * sizeof(T));
-    memory.totals.reserve((static_cast<std::size_t>(chunk) * rowEntries() + kSumsRead) * sizeof(std::uint16_t));
+    for (int top = 0; top < rows.count; top = volume.tileBottom(top)) {
+      longest_row_ = std::max(longest_row_, volume.rowEntries(top));
+    }
+    memory.excess.reserve((volume.offset(rows.count - 1, 0) + longest_row_) * sizeof(T));
+    memory.totals.reserve((chunk * longest_row_ + kSumsRead) * sizeof(std::uint16_t));
     memory.across.reserve((pixels + rows.count) * sizeof(T));
     memory.down.reserve((pixels + width_) * sizeof(T));
     memory.columns.reserve(2 * width_ * slot_ * sizeof(T));
@@ -89,8 +81,10 @@ class Paths {
     memory.along.reserve(2 * slot_ * kBundleLines * threads * sizeof(T));
   }
 
-  /// Of the row-th row of a chunk.
-  std::uint16_t* totals(int row) { return memory_.totals.as<std::uint16_t>() + row * rowEntries(); }
+  /// Of a pixel of a chunk that begins with row `top`.
+  std::uint16_t* totals(int top, int row, int x) {
+    return memory_.totals.as<std::uint16_t>() + (volume_.offset(row, x) - volume_.offset(top, 0));
+  }
 
   /// Both ways along up to kBundleLines rows from `first` on; begins their sums.
   void alongRows(int first, int last, int thread) {
@@ -101,11 +95,12 @@ class Paths {
     }
   }
 
-  /// Forgets the predecessors of the columns in [first, last): they cost nothing.
-  void startColumns(int first, int last) {
+  /// Forgets the predecessors of the columns in [first, last) at a row: they cost nothing.
+  void startColumns(int first, int last, int row) {
     for (int x = first; x < last; ++x) {
-      clear(column(x, 0));
-      clear(column(x, 1));
+      const int count = volume_.span(row, x).count;
+      clear(column(x, 0), count);
+      clear(column(x, 1), count);
       memory_.smallest.as<T>()[x] = 0;
     }
   }
@@ -114,50 +109,59 @@ class Paths {
   /// Upwards, the last way, gives the totals of these rows.
   void alongColumns(int first, int last, int top, int bottom, bool upwards, bool exchanged) {
     const int lines = last - first == kBundleLines ? kBundleLines : 1;
-    PathBundle<T> bundle = emptyBundle();
-    bundle.length = bottom - top;
-    bundle.step = upwards ? -rows_.step * volumeRow() : rows_.step * volumeRow();
-    bundle.p2_step = upwards ? -width_ : width_;
-    const int start = upwards ? bottom - 1 : top;
     for (int x = first; x < last; x += lines) {
-      for (int k = 0; k < lines; ++k) {
-        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(x + k) * count_;
-        bundle.costs[k] = volume_.at<T>(rows_.imageRow(start), 0) + pixel;
-        bundle.excess[k] = excess(start) + pixel;
-        bundle.totals[k] = totals(start - top) + pixel;
-        bundle.p2[k] = memory_.down.as<T>() + static_cast<std::ptrdiff_t>(upwards ? start + 1 : start) * width_ + x + k;
-        bundle.before[k] = column(x + k, exchanged ? 1 : 0);
-        bundle.after[k] = column(x + k, exchanged ? 0 : 1);
+      bool other = exchanged;
+      for (int done = 0; done < bottom - top;) {
+        const int start = upwards ? bottom - 1 - done : top + done;
+        const int end = upwards ? std::max(top, volume_.tileTop(start)) : std::min(bottom, volume_.tileBottom(start));
+        const int length = upwards ? start + 1 - end : end - start;
+        followColumns(x, lines, start, length, top, upwards, other);
+        other ^= length % 2 != 0;
+        done += length;
       }
-      bundle.smallest = memory_.smallest.as<T>() + x;
-      bundle.sums_step = upwards ? -rowEntries() : rowEntries();
-      follow(bundle, lines, upwards ? PathSum::kLast : PathSum::kNext);
     }
   }
 
  private:
   static constexpr std::size_t kGuard = CostVolume::kPadding;
 
-  std::ptrdiff_t rowEntries() const { return static_cast<std::ptrdiff_t>(width_) * count_; }
-  std::ptrdiff_t volumeRow() const { return rowEntries(); }
-  T* excess(int row) { return memory_.excess.as<T>() + row * rowEntries(); }
+  T* excess(int row, int x) { return memory_.excess.as<T>() + volume_.offset(row, x); }
   T* column(int x, int slot) {
     return memory_.columns.as<T>() + (2 * static_cast<std::size_t>(x) + slot) * slot_ + kGuard;
   }
 
-  PathBundle<T> emptyBundle() const {
+  PathBundle<T> bundleOf(int count) const {
     PathBundle<T> bundle{};
-    bundle.count = count_;
+    bundle.count = count;
     bundle.p1 = penalties_.p1;
     return bundle;
   }
 
-  /// A slot of a predecessor outside the image, with guards that stay the largest after P1 is added.
-  void clear(T* slot) const {
-    const auto guard = static_cast<T>(static_cast<T>(~T{0}) - penalties_.p1);
-    std::fill(slot - kGuard, slot, guard);
-    std::fill(slot, slot + count_, T{0});
-    std::fill(slot + count_, slot + count_ + kGuard, guard);
+  /// Stays the largest after P1 is added.
+  T largest() const { return static_cast<T>(static_cast<T>(~T{0}) - penalties_.p1); }
+
+  /// A slot of a predecessor outside the image.
+  void clear(T* slot, int count) const {
+    std::fill(slot - kGuard, slot, largest());
+    std::fill(slot, slot + count, T{0});
+    std::fill(slot + count, slot + count + kGuard, largest());
+  }
+
+  /// The slots of a path that leaves one span for another: what was not searched costs a jump from the best there.
+  void carryOver(SearchTiles::Span from, SearchTiles::Span to, int k, const PathBundle<T>& bundle) const {
+    if (from.first == to.first && from.count == to.count) return;
+    T* const old = bundle.before[k] - from.first;  // both by the index of the disparity
+    T* const now = bundle.after[k] - to.first;
+    const int first = std::max(from.first, to.first);
+    const int last = std::max(first, std::min(from.first + from.count, to.first + to.count));
+    T smallest = static_cast<T>(bundle.smallest[k] + *bundle.p2[k]);
+    const T jump = smallest;
+    for (int i = first; i < last; ++i) smallest = std::min(smallest, old[i]);
+    clear(bundle.after[k], to.count);
+    std::fill(now + to.first, now + to.first + to.count, static_cast<T>(jump - smallest));
+    for (int i = first; i < last; ++i) now[i] = static_cast<T>(std::min(old[i], jump) - smallest);
+    std::copy(bundle.after[k] - kGuard, bundle.after[k] + to.count + kGuard, bundle.before[k] - kGuard);
+    bundle.smallest[k] = 0;
   }
 
   void fillPenalties(int row) {
@@ -173,25 +177,63 @@ class Paths {
 
   void followRows(int row, int lines, bool backwards, int thread) {
     T smallest[kBundleLines] = {};
-    PathBundle<T> bundle = emptyBundle();
-    bundle.length = width_;
-    bundle.step = bundle.sums_step = backwards ? -count_ : count_;
+    T* slots = memory_.along.as<T>() + 2 * slot_ * kBundleLines * thread + kGuard;
+    int x = backwards ? width_ - 1 : 0;
+    for (int k = 0; k < 2 * lines; ++k) clear(slots + k * slot_, volume_.span(row, x).count);
+    bool exchanged = false;
+    for (int done = 0; done < width_;) {
+      const int length = backwards ? x + 1 - volume_.tileLeft(x) : volume_.tileRight(x) - x;
+      followRowTile(row, lines, x, length, backwards, slots, exchanged, smallest);
+      exchanged ^= length % 2 != 0;
+      done += length;
+      x = backwards ? x - length : x + length;
+    }
+  }
+
+  /// `length` pixels of one tile from column x on.
+  void followRowTile(int row, int lines, int x, int length, bool backwards, T* slots, bool exchanged, T* smallest) {
+    const int before = backwards ? x + 1 : x - 1;
+    const SearchTiles::Span span = volume_.span(row, x);
+    PathBundle<T> bundle = bundleOf(span.count);
+    bundle.length = length;
+    bundle.step = bundle.sums_step = backwards ? -span.count : span.count;
     bundle.p2_step = backwards ? -1 : 1;
     bundle.smallest = smallest;
-    const int start = backwards ? width_ - 1 : 0;
-    T* slots = memory_.along.as<T>() + 2 * slot_ * kBundleLines * thread + kGuard;
     for (int k = 0; k < lines; ++k) {
-      const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(start) * count_;
-      bundle.costs[k] = volume_.at<T>(rows_.imageRow(row + k), 0) + pixel;
-      bundle.excess[k] = excess(row + k) + pixel;
-      bundle.p2[k] =
-          memory_.across.as<T>() + static_cast<std::ptrdiff_t>(row + k) * (width_ + 1) + (backwards ? width_ : 0);
-      bundle.before[k] = slots + 2 * k * slot_;
-      bundle.after[k] = slots + (2 * k + 1) * slot_;
-      clear(bundle.before[k]);
-      clear(bundle.after[k]);
+      bundle.costs[k] = volume_.at<T>(rows_.imageRow(row + k), x);
+      bundle.excess[k] = excess(row + k, x);
+      bundle.p2[k] = memory_.across.as<T>() + static_cast<std::ptrdiff_t>(row + k) * (width_ + 1) + x + backwards;
+      bundle.before[k] = slots + (2 * k + exchanged) * slot_;
+      bundle.after[k] = slots + (2 * k + !exchanged) * slot_;
+      if (before >= 0 && before < width_) {
+        carryOver(volume_.span(row, before), span, k, bundle);
+      }
     }
     follow(bundle, lines, backwards ? PathSum::kNext : PathSum::kFirst);
+  }
+
+  /// `length` pixels of one tile from row `start` on, of a chunk that begins with row `top`.
+  void followColumns(int x, int lines, int start, int length, int top, bool upwards, bool exchanged) {
+    const int before = upwards ? start + 1 : start - 1, way = upwards ? -1 : 1;
+    const SearchTiles::Span span = volume_.span(start, x);
+    PathBundle<T> bundle = bundleOf(span.count);
+    bundle.length = length;
+    bundle.step = way * rows_.step * static_cast<std::ptrdiff_t>(volume_.rowEntries(start));
+    bundle.sums_step = way * static_cast<std::ptrdiff_t>(volume_.rowEntries(start));
+    bundle.p2_step = way * width_;
+    bundle.smallest = memory_.smallest.as<T>() + x;
+    for (int k = 0; k < lines; ++k) {
+      bundle.costs[k] = volume_.at<T>(rows_.imageRow(start), x + k);
+      bundle.excess[k] = excess(start, x + k);
+      bundle.p2[k] = memory_.down.as<T>() + static_cast<std::ptrdiff_t>(start + upwards) * width_ + x + k;
+      bundle.before[k] = column(x + k, exchanged ? 1 : 0);
+      bundle.after[k] = column(x + k, exchanged ? 0 : 1);
+      bundle.totals[k] = totals(top, start, x + k);
+      if (before >= 0 && before < rows_.count) {
+        carryOver(volume_.span(before, x), span, k, bundle);
+      }
+    }
+    follow(bundle, lines, upwards ? PathSum::kLast : PathSum::kNext);
   }
 
   const CostVolume& volume_;
@@ -199,8 +241,8 @@ class Paths {
   const cv::Mat& guide_;
   const Penalties<T>& penalties_;
   const int width_;
-  const int count_;
   const std::size_t slot_;
+  std::size_t longest_row_ = 0;  // entries
   PathMemory& memory_;
 };
 
@@ -245,7 +287,7 @@ void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& 
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp for schedule(static)
-    for (int i = 0; i < columns; ++i) paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width));
+    for (int i = 0; i < columns; ++i) paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width), 0);
     for (int top = 0; top < rows.count; top += chunk) {
       const int bottom = std::min(top + chunk, rows.count);
 #pragma omp for schedule(static)
@@ -258,7 +300,9 @@ void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& 
       }
     }
 #pragma omp for schedule(static)
-    for (int i = 0; i < columns; ++i) paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width));
+    for (int i = 0; i < columns; ++i) {
+      paths.startColumns(i * kBundleLines, std::min((i + 1) * kBundleLines, width), rows.count - 1);
+    }
     for (int bottom = rows.count; bottom > 0; bottom -= chunk) {
       const int top = std::max(bottom - chunk, 0);
       const bool exchanged = (rows.count - bottom) % 2 != 0;
@@ -268,7 +312,7 @@ void SemiGlobalMatcher::Workspace::run(const CostVolume& volume, const cv::Mat& 
       }
 #pragma omp for schedule(static)
       for (int row = top; row < bottom; ++row) {
-        selections[omp_get_thread_num()].selectRow(row, paths.totals(row - top), output);
+        selections[omp_get_thread_num()].selectRow(row, paths.totals(top, row, 0), output);
       }
     }
   }
@@ -282,6 +326,10 @@ SemiGlobalMatcher& SemiGlobalMatcher::operator=(SemiGlobalMatcher&&) noexcept = 
 void SemiGlobalMatcher::match(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params,
                               OptimizerOutput& output, int row_step) {
   check(volume, guide, params);
+  if (row_step > 1 && !volume.whole()) {
+    throw std::invalid_argument("semi-global matching: of a volume of search tiles all rows take part, not every " +
+                                std::to_string(row_step) + "th");
+  }
   const RowGrid rows(volume.height(), row_step);
   if (volume.depth() == CostVolume::Depth::kU8) {
     workspace_->run<std::uint8_t>(volume, guide, params, rows, output);

@@ -62,7 +62,9 @@ double propagateWindows(const std::vector<GridSeed>& seeds, const cv::Mat& left,
     for (int y = std::max(0, seed.y - radius); y <= std::min(left.rows - 1, seed.y + radius); ++y) {
       for (int x = std::max(0, seed.x - radius); x <= std::min(left.cols - 1, seed.x + radius); ++x) {
         const std::uint32_t factor = factors[colourThirds(centre, left.ptr<uchar>(y) + channels * x, channels)];
-        T& raw = volume.at<T>(y, x)[seed.index];
+        const SearchTiles::Span span = volume.span(y, x);
+        if (seed.index < span.first || seed.index >= span.first + span.count) continue;
+        T& raw = volume.at<T>(y, x)[seed.index - span.first];
         raw = static_cast<T>((raw * factor + 32768U) >> 16U);
         touched[static_cast<std::size_t>(y) * left.cols + x] = 1;
       }

@@ -13,6 +13,7 @@
 #include "fdp_stereo/left_right_check.hpp"
 #include "fdp_stereo/speckle_filter.hpp"
 #include "parallel.hpp"
+#include "row_grid.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -35,6 +36,13 @@ float medianAround(const float* row, int width, int x) {
   const auto middle = known.begin() + std::distance(known.begin(), end) / 2;
   std::nth_element(known.begin(), middle, end);
   return *middle;
+}
+
+cv::Mat rowsOf(const cv::Mat& image, int row_step) {
+  const RowGrid rows(image.rows, row_step);
+  cv::Mat taken(rows.count, image.cols, image.type());
+  for (int row = 0; row < rows.count; ++row) image.row(rows.imageRow(row)).copyTo(taken.row(row));
+  return taken;
 }
 
 int rowsPerSeed(const QuasiDenseParams& params) { return std::max(1, params.spacing_px / params.row_step); }
@@ -81,25 +89,33 @@ DisparityPropagationParams surfacesOf(const QuasiDenseParams& params) {
   return surfaces;
 }
 
-Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
-                      const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher) {
+RoughDisparity matchRoughly(const CostVolume& volume, const cv::Mat& guide, const QuasiDenseParams& params,
+                            const SemiGlobalParams& penalties, SemiGlobalMatcher& matcher) {
   if (params.row_step < 1 || params.spacing_px < 1) {
     throw std::invalid_argument("quasi-dense seeds: row_step " + std::to_string(params.row_step) + " and spacing_px " +
                                 std::to_string(params.spacing_px) + " must be at least 1");
   }
-  OptimizerOutput rough;
-  matcher.match(volume, guide, penalties, rough, params.row_step);
+  OptimizerOutput output;
+  if (volume.height() == guide.rows) {
+    matcher.match(volume, guide, penalties, output, params.row_step);
+  } else {
+    matcher.match(volume, rowsOf(guide, params.row_step), penalties, output);
+  }
+  RoughDisparity rough{output.disparity_left, output.disparity_left.clone()};
   LeftRightCheckParams check;
   check.max_difference_px = kMaxDifferencePx;
   check.vote = false;
-  checkLeftRight(rough.disparity_left, rough.disparity_right, check);
+  checkLeftRight(rough.known, output.disparity_right, check);
   SpeckleFilterParams speckles;
   speckles.max_size = kSpecklePx / params.row_step;
   speckles.max_difference_px = kMaxDifferencePx;
-  filterSpeckles(rough.disparity_left, speckles);
+  filterSpeckles(rough.known, speckles);
+  return rough;
+}
 
-  const cv::Mat grid = sampleGrid(rough.disparity_left, params);
-  const int first_row = SemiGlobalMatcher::firstRow(volume.height(), params.row_step);
+Seeds quasiDenseSeeds(const RoughDisparity& rough, cv::Size size, const QuasiDenseParams& params) {
+  const cv::Mat grid = sampleGrid(rough.known, params);
+  const int first_row = SemiGlobalMatcher::firstRow(size.height, params.row_step);
   const int rows_per_seed = rowsPerSeed(params);
   Seeds seeds;
   for (int row = 0; row < grid.rows; ++row) {
@@ -107,9 +123,9 @@ Seeds quasiDenseSeeds(const CostVolume& volume, const cv::Mat& guide, const Quas
       const float d = grid.at<float>(row, column);
       if (std::isnan(d) || agreeing(grid, row, column) < kMinAgreeing) continue;
       Seed seed;
-      seed.x = static_cast<float>(firstOf(params.spacing_px, volume.width()) + column * params.spacing_px);
-      seed.y = static_cast<float>(
-          first_row + (firstOf(rows_per_seed, rough.disparity_left.rows) + row * rows_per_seed) * params.row_step);
+      seed.x = static_cast<float>(firstOf(params.spacing_px, size.width) + column * params.spacing_px);
+      seed.y = static_cast<float>(first_row +
+                                  (firstOf(rows_per_seed, rough.known.rows) + row * rows_per_seed) * params.row_step);
       seed.d = d;
       seed.source = SeedSource::kQuasiDense;
       seeds.push_back(seed);

@@ -262,7 +262,8 @@ double blendSurfaces(const Seeds& seeds, const GeodesicMap& map, const Disparity
       if (share[cell] == 0) continue;
       const float d = planes[owner[cell]].at(seeds[owner[cell]], x, y);
       const float at = (d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
-      blend(table.at(std::clamp(at, 0.0F, last)), share[cell], volume.range().count, volume.at<T>(y, x));
+      const SearchTiles::Span span = volume.span(y, x);
+      blend(table.at(std::clamp(at, 0.0F, last)) + span.first, share[cell], volume.searched(span), volume.at<T>(y, x));
       ++changed;
     }
   }

@@ -254,11 +254,11 @@ void findWinners(const std::uint16_t* sums, int stride, int count, int width, Wi
   }
 }
 
-void keepSmaller(const std::uint16_t* __restrict values, int count, std::uint16_t* __restrict best,
+void keepSmaller(const std::uint16_t* __restrict values, int first, int count, std::uint16_t* __restrict best,
                  std::uint16_t* __restrict best_index) {
   for (int i = 0; i < count; ++i) {
     const bool better = values[i] < best[i];
-    best_index[i] = better ? static_cast<std::uint16_t>(i) : best_index[i];
+    best_index[i] = better ? static_cast<std::uint16_t>(first + i) : best_index[i];
     best[i] = better ? values[i] : best[i];
   }
 }

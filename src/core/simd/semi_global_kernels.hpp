@@ -66,8 +66,9 @@ struct SemiGlobalKernels {
   /// Winners of `width` pixels among sums[x * stride .. x * stride + count - 1]; the entries up to the next multiple of
   /// kSumsRead are read, too.
   void (*findWinners)(const std::uint16_t* sums, int stride, int count, int width, Winner* winners);
-  /// The other view's best: where values[i] < best[i], best[i] = values[i] and best_index[i] = i.
-  void (*keepSmaller)(const std::uint16_t* values, int count, std::uint16_t* best, std::uint16_t* best_index);
+  /// The other view's best: where values[i] < best[i], best[i] = values[i] and best_index[i] = first + i.
+  void (*keepSmaller)(const std::uint16_t* values, int first, int count, std::uint16_t* best,
+                      std::uint16_t* best_index);
   /// subpixelOffset() of `count` pixels.
   void (*subpixelOffsets)(SubpixelFit fit, const Minima& minima, int count, float* offsets);
 };
