@@ -106,7 +106,7 @@ test_arm64() {
   build core_tests -DFDP_STEREO_ROS=OFF -DCMAKE_TOOLCHAIN_FILE=/fdp_stereo/cmake/toolchains/aarch64-linux-gnu.cmake
   inside env OBJDUMP=aarch64-linux-gnu-objdump sh -c \
     '/fdp_stereo/scripts/check_vector_code.sh /build/CMakeFiles/fdp_stereo_core_kernels_baseline.dir/src/core/simd/*.o'
-  run_tests -L core
+  run_tests -L core -j "$(nproc)"
 }
 
 test_bare() {

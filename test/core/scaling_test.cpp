@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "fdp_stereo/image_preparation.hpp"
+#include "images/area_resampling.hpp"
 #include "reference/random_images.hpp"
 
 namespace fdp_stereo {
@@ -30,6 +32,20 @@ TEST(Scaling, HalvesImagesAndSharesTheGreyOne) {
   EXPECT_EQ(small.left.data, small.left_grey.data);
   const cv::Mat colour = reference::texture(31, 40, CV_8UC3, 1);
   EXPECT_EQ(scaling.shrink(prepareImages(colour, colour)).left_grey.size(), cv::Size(20, 16));
+}
+
+TEST(Scaling, SmallPixelsAreTheMeansOfTheirAreas) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1}) {
+    const cv::Mat image = reference::texture(37, 83, type, 3);
+    for (const cv::Size size : {cv::Size(83, 37), {46, 20}, {82, 36}, {1, 1}, {5, 37}}) {
+      const cv::Mat small = shrinkByArea(image, size);
+      cv::Mat expected;
+      cv::resize(image, expected, size, 0.0, 0.0, cv::INTER_AREA);
+      EXPECT_LE(cv::norm(small, expected, cv::NORM_INF), 1.0) << type << ", " << size;
+      EXPECT_LE(cv::norm(small, expected, cv::NORM_L1), 0.02 * static_cast<double>(small.total()))
+          << type << ", " << size;
+    }
+  }
 }
 
 TEST(Scaling, KeepsAPixelOfTheSmallestImage) {

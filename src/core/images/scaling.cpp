@@ -7,8 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include <opencv2/imgproc.hpp>
-
+#include "images/area_resampling.hpp"
 #include "images/colour.hpp"
 #include "parallel.hpp"
 
@@ -17,12 +16,6 @@ namespace {
 
 constexpr float kSameSurfacePx = 1.0F;    // of the small image
 constexpr float kColourPerPixel = 16.0F;  // a difference of so many grey levels counts like a distance of 1 px
-
-cv::Mat resized(const cv::Mat& image, cv::Size size) {
-  cv::Mat result;
-  cv::resize(image, result, size, 0.0, 0.0, cv::INTER_AREA);
-  return result;
-}
 
 /// Position in the other image: pixel areas cover one another.
 float moved(float position, double ratio) { return static_cast<float>((position + 0.5) * ratio - 0.5); }
@@ -151,11 +144,11 @@ Scaling::Scaling(cv::Size full, double scale)
 StereoPair Scaling::shrink(const StereoPair& pair) const {
   if (identity()) return pair;
   StereoPair small;
-  small.left = resized(pair.left, small_);
-  small.right = resized(pair.right, small_);
+  small.left = shrinkByArea(pair.left, small_);
+  small.right = shrinkByArea(pair.right, small_);
   const bool shared = pair.left.data == pair.left_grey.data;
-  small.left_grey = shared ? small.left : resized(pair.left_grey, small_);
-  small.right_grey = shared ? small.right : resized(pair.right_grey, small_);
+  small.left_grey = shared ? small.left : shrinkByArea(pair.left_grey, small_);
+  small.right_grey = shared ? small.right : shrinkByArea(pair.right_grey, small_);
   return small;
 }
 
