@@ -386,14 +386,16 @@ void fillRow(const CostSource& source, const MatchingCostParams& params, int y, 
              CostVolume& volume) {
   const int width = volume.width();
   loadRow(source, y, width, volume, scratch);
-  for (int x = 0; x < width; ++x) {
-    const SearchTiles::Span span = volume.span(row, x);
-    const CostPixel at{x, width, volume.stride(), span.first, volume.searched(span)};
-    T* costs = volume.at<T>(row, x);
-    costsOfPixel(source, params.type, at, scratch, costs);
-    if (source.learned.share > 0) addLearned(source, at, scratch, costs);
-    repeatBorder(costs, x, width, {volume.range().min + at.first, at.count}, span.count,
-                 static_cast<T>(volume.maxRaw()));
+  const auto max_raw = static_cast<T>(volume.maxRaw());
+  T* costs = volume.at<T>(row, 0);
+  for (int left = 0; left < width; left = volume.tileRight(left)) {
+    const SearchTiles::Span span = volume.span(row, left);
+    CostPixel at{left, width, volume.stride(), span.first, volume.searched(span)};
+    for (; at.x < volume.tileRight(left); ++at.x, costs += span.count) {
+      costsOfPixel(source, params.type, at, scratch, costs);
+      if (source.learned.share > 0) addLearned(source, at, scratch, costs);
+      repeatBorder(costs, at.x, width, {volume.range().min + at.first, at.count}, span.count, max_raw);
+    }
   }
   if (params.border == CostBorder::kRepeatPixel) repeatPixels<T>(row, volume);
 }
