@@ -143,6 +143,20 @@ class ReportPageTest(unittest.TestCase):
             "return performance.getEntriesByType('resource').map(entry => entry.name)"
             ".filter(name => !name.startsWith('file:') && !name.startsWith('data:'))"), [])
 
+    def test_7_corrupted_images_have_a_table_of_their_own(self):
+        hidden = "return document.getElementById('robustness').hidden"
+        self.assertTrue(self.browser.script(hidden))
+        report = os.path.join(self.folder, "spoilt")
+        code, _, err = run("evaluate", os.path.join(self.folder, "scenes", "three"), "--preset", "light", "--peers",
+                           "--corrupt", "none", "--corrupt", "dark", "--report", report)
+        self.assertEqual(code, 0, err)
+        self.browser.open("file://" + os.path.join(report, "index.html"))
+        self.assertFalse(self.browser.script(hidden))
+        self.assertEqual(self.column("ratios", 0), ["none", "dark"])
+        self.assertEqual(self.column("compare", 0), ["three", "three+dark", "mean", "mean+dark"])
+        self.assertIn("quarter of the light", self.browser.script("return document.getElementById('images').textContent"))
+        self.assertEqual(self.browser.messages(), [])
+
 
 if __name__ == "__main__":
     unittest.main()
