@@ -9,6 +9,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <sstream>
 
+#include "fdp_stereo/buffer.hpp"
 #include "fdp_stereo/out_of_memory.hpp"
 
 namespace fdp_stereo {
@@ -121,6 +122,7 @@ std::string versionText(const std::string& tool) { return tool + " (fdp_stereo) 
 
 int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
   terminateWithMessage(app.get_name());
+  keepFreedMemory();
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   cv::setNumThreads(1);  // its pool waits for ever for a thread that could not be started, as where memory is short
   app.set_version_flag("--version", versionText(app.get_name()), "Print the version and exit");

@@ -9,6 +9,9 @@
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace fdp_stereo {
 namespace {
@@ -40,6 +43,15 @@ void Buffer::reserve(std::size_t bytes) {
   size_ = rounded;
 #ifdef __linux__
   if (alignment == kHugePage) madvise(data_.get(), rounded, MADV_HUGEPAGE);  // a wish: ordinary pages do as well
+#endif
+}
+
+void keepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kLargestOfHeap = 32 << 20;  // bytes, the most that glibc allows; larger ones are mapped
+  constexpr int kKept = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kLargestOfHeap);
+  mallopt(M_TRIM_THRESHOLD, kKept);
 #endif
 }
 

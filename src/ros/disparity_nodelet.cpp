@@ -15,6 +15,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "deadline_controller.hpp"
+#include "fdp_stereo/buffer.hpp"
 #include "fdp_stereo/out_of_memory.hpp"
 #include "frame_processor.hpp"
 #include "frame_worker.hpp"
@@ -162,6 +163,7 @@ void DisparityNodelet::onInit() {
 }
 
 void DisparityNodelet::start() {
+  keepFreedMemory();
   ros::NodeHandle& node = getNodeHandle();
   reporter_.setName(getName());
   const auto say = [this](const std::string& message) { warn(message); };
