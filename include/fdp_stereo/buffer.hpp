@@ -41,8 +41,8 @@ class Buffer {
 };
 
 /// Tells the C library to keep what is freed for the next frame. Left to itself glibc gives it back to the system, and
-/// every page of every frame costs a fault again: a quarter of the time of the preset light. Concerns the whole process;
-/// the tools and the node do it when they start, a program that matches frame after frame should, too.
+/// every page of every frame costs a fault again: on a virtual machine half of the time of the preset light. Concerns
+/// the whole process; the tools and the node do it when they start, a program that matches a stream should, too.
 void keepFreedMemory();
 
 }  // namespace fdp_stereo
