@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // threads LEFT RIGHT: how much faster `fast` is with more threads, on a machine with enough cores for them.
+#include <sched.h>
+
 #include <array>
 #include <cstdio>
 
@@ -56,7 +58,16 @@ void print(const Point& point, const cv::Mat& left, const cv::Mat& right, const 
   }
 }
 
+/// Threads that run at the same time on one core, or share its units or memory, would slow each other down.
+void stayOnOneCore() {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(sched_getcpu(), &one);
+  sched_setaffinity(0, sizeof(one), &one);
+}
+
 int run(const Options& options) {
+  stayOnOneCore();
   cv::setNumThreads(1);  // what OpenCV would share counts as serial
   const cv::Mat left = readImage(options.left), right = readImage(options.right);
   for (const Point& point : kPoints) {

@@ -257,14 +257,18 @@ double blendSurfaces(const Seeds& seeds, const GeodesicMap& map, const Disparity
   for (int y = 0; y < volume.height(); ++y) {
     const auto* owner = map.owner.ptr<std::int32_t>(y / kCellPx);
     const auto* share = shares.ptr<uchar>(y / kCellPx);
-    for (int x = 0; x < volume.width(); ++x) {
-      const int cell = x / kCellPx;
-      if (share[cell] == 0) continue;
-      const float d = planes[owner[cell]].at(seeds[owner[cell]], x, y);
-      const float at = (d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
-      const SearchTiles::Span span = volume.span(y, x);
-      blend(table.at(std::clamp(at, 0.0F, last)) + span.first, share[cell], volume.searched(span), volume.at<T>(y, x));
-      ++changed;
+    for (int left = 0; left < volume.width(); left = volume.tileRight(left)) {
+      const SearchTiles::Span span = volume.span(y, left);
+      const int right = volume.tileRight(left), searched = volume.searched(span);
+      T* costs = volume.at<T>(y, left);
+      for (int x = left; x < right; ++x, costs += span.count) {
+        const int cell = x / kCellPx;
+        if (share[cell] == 0) continue;
+        const float d = planes[owner[cell]].at(seeds[owner[cell]], x, y);
+        const float at = (d - static_cast<float>(axis.min)) * static_cast<float>(axis.steps);
+        blend(table.at(std::clamp(at, 0.0F, last)) + span.first, share[cell], searched, costs);
+        ++changed;
+      }
     }
   }
   return static_cast<double>(changed) / (static_cast<double>(volume.height()) * volume.width());
