@@ -3,6 +3,7 @@
 #include "frame_processor.hpp"
 
 #include <cmath>
+#include <future>
 
 #include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
@@ -133,8 +134,8 @@ FrameOutput FrameProcessor::process(const StereoFrame& frame, const NodeSettings
 /// Raw images of this pair and what is to be said of them.
 FrameProcessor::Images FrameProcessor::rectifyPair(const StereoFrame& frame, const Images& raw, FrameReport& report) {
   const auto start = Clock::now();
-  const auto rectify = [&](Rectifier& rectifier, const cv::Mat& image, const sensor_msgs::CameraInfo& info,
-                           const std::string& image_topic, const std::string& info_topic) {
+  const auto tell = [&](const sensor_msgs::CameraInfo& info, const std::string& image_topic,
+                        const std::string& info_topic) {
     const bool needed = needsRectification(info);
     if (!needed)
       report.notes.push_back(text(image_topic, ": ", info_topic, " leaves nothing to rectify: used as it is"));
@@ -143,10 +144,14 @@ FrameProcessor::Images FrameProcessor::rectifyPair(const StereoFrame& frame, con
                                      ": rectified already, by its name, and now once more; give raw images,",
                                      " or set ~rectify to none"));
     }
-    return rectifier.rectify(image, info, info_topic);
   };
-  Images rectified{rectify(left_rectifier_, raw[0], *frame.left_info, topics_.left_image, topics_.left_info),
-                   rectify(right_rectifier_, raw[1], *frame.right_info, topics_.right_image, topics_.right_info)};
+  tell(*frame.left_info, topics_.left_image, topics_.left_info);
+  tell(*frame.right_info, topics_.right_image, topics_.right_info);
+  // At the same time, as two nodelets of image_proc would.
+  std::future<cv::Mat> right = std::async(
+      std::launch::async, [&] { return right_rectifier_.rectify(raw[1], *frame.right_info, topics_.right_info); });
+  cv::Mat left = left_rectifier_.rectify(raw[0], *frame.left_info, topics_.left_info);
+  Images rectified{std::move(left), right.get()};
   report.rectification_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return rectified;
 }
