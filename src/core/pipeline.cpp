@@ -105,7 +105,7 @@ void checkMemory(const PipelineParams& params, cv::Size size, DisparityRange sea
       ": reduce search.num_disparities or pipeline.scale, or raise the limit");
 }
 
-constexpr float kClosedConfidence = 0.5F;  ///< at most, of a pixel that says what is around it
+constexpr float kClosedConfidence = 0.75F;  ///< at most, of a pixel that says what is around it: so many are right
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && (a.empty() || cv::norm(a, b, cv::NORM_INF) == 0.0);
