@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fdp_stereo authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stands before the functions of GCC's OpenMP library of the same name (libgomp's ABI), and calls them.
+// Stands before the functions of GCC's OpenMP library of the same name (libgomp's ABI), and calls them. Regions are not
+// nested, and loops count up by one.
 #include "critical_path.hpp"
 
 #include <dlfcn.h>
@@ -49,7 +50,7 @@ struct Region {
   }
 };
 
-Region* region = nullptr;  // regions are not nested
+Region* region = nullptr;
 thread_local double phase_since = 0.0;
 
 void runThread(void* /*data*/) {

@@ -28,6 +28,7 @@ done
 
 cd "$FDP_STEREO_ROOT"
 if [ "$program" = threads ]; then
+  [ ${#scenes[@]} -eq 0 ] || { echo "benchmark.sh: --scaling measures the sample, it takes no scene" >&2; exit 2; }
   scenes=(sample/motorcycle/left.png sample/motorcycle/right.png)
 elif [ ${#scenes[@]} -eq 0 ]; then
   scenes=(sample/motorcycle)

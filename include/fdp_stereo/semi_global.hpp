@@ -31,12 +31,11 @@ class SemiGlobalMatcher {
   SemiGlobalMatcher& operator=(SemiGlobalMatcher&&) noexcept;
 
   /// Disparities of both views from the costs of the left one. guide: the left image, CV_8UC1, of the volume's size.
-  /// Every row_step-th row takes part, from firstRow() on, as if there were no others; the maps have as many rows as
+  /// Every row_step-th row takes part, from row_step / 2 on, as if there were no others; the maps have as many rows as
   /// took part. The result is the same for every number of threads. Throws std::invalid_argument for a guide of another
   /// size or type, or costs and penalties that do not fit the depth of the volume together.
   void match(const CostVolume& volume, const cv::Mat& guide, const SemiGlobalParams& params, OptimizerOutput& output,
              int row_step = 1);
-  static int firstRow(int height, int row_step);
 
   /// Bytes beside the volume for each of its costs, with a row_step of 1.
   static constexpr double kBytesPerCost = 1.0;

@@ -13,6 +13,7 @@
 #include "reference/post_processing_reference.hpp"
 #include "reference/random_images.hpp"
 #include "reference/random_volume.hpp"
+#include "row_grid.hpp"
 
 namespace fdp_stereo {
 namespace {
@@ -29,7 +30,7 @@ SemiGlobalParams penalties() {
 /// The rows that match() takes, as an image or volume of their own.
 cv::Mat rowsOf(const cv::Mat& image, int step) {
   cv::Mat rows;
-  for (int y = SemiGlobalMatcher::firstRow(image.rows, step); y < image.rows; y += step) rows.push_back(image.row(y));
+  for (int y = RowGrid(image.rows, step).first; y < image.rows; y += step) rows.push_back(image.row(y));
   return rows;
 }
 
@@ -37,7 +38,7 @@ CostVolume rowsOf(const CostVolume& volume, int rows, int step) {
   CostVolume result;
   result.create(rows, volume.width(), volume.range(), volume.depth(), volume.step(), volume.maxRaw());
   result.clearPadding();
-  const int first = SemiGlobalMatcher::firstRow(volume.height(), step);
+  const int first = RowGrid(volume.height(), step).first;
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < volume.width(); ++x) {
       for (int i = 0; i < volume.range().count; ++i) result.setRaw(y, x, i, volume.raw(first + y * step, x, i));

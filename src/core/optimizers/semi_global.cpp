@@ -338,6 +338,4 @@ void SemiGlobalMatcher::match(const CostVolume& volume, const cv::Mat& guide, co
   }
 }
 
-int SemiGlobalMatcher::firstRow(int height, int row_step) { return RowGrid(height, row_step).imageRow(0); }
-
 }  // namespace fdp_stereo

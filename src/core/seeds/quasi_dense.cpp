@@ -115,7 +115,7 @@ RoughDisparity matchRoughly(const CostVolume& volume, const cv::Mat& guide, cons
 
 Seeds quasiDenseSeeds(const RoughDisparity& rough, cv::Size size, const QuasiDenseParams& params) {
   const cv::Mat grid = sampleGrid(rough.known, params);
-  const int first_row = SemiGlobalMatcher::firstRow(size.height, params.row_step);
+  const RowGrid rows(size.height, params.row_step);
   const int rows_per_seed = rowsPerSeed(params);
   Seeds seeds;
   for (int row = 0; row < grid.rows; ++row) {
@@ -124,8 +124,7 @@ Seeds quasiDenseSeeds(const RoughDisparity& rough, cv::Size size, const QuasiDen
       if (std::isnan(d) || agreeing(grid, row, column) < kMinAgreeing) continue;
       Seed seed;
       seed.x = static_cast<float>(firstOf(params.spacing_px, size.width) + column * params.spacing_px);
-      seed.y = static_cast<float>(first_row +
-                                  (firstOf(rows_per_seed, rough.known.rows) + row * rows_per_seed) * params.row_step);
+      seed.y = static_cast<float>(rows.imageRow(firstOf(rows_per_seed, rough.known.rows) + row * rows_per_seed));
       seed.d = d;
       seed.source = SeedSource::kQuasiDense;
       seeds.push_back(seed);
